@@ -138,7 +138,7 @@ step('a click shows the motions', async ({ page }) => {
   assert.equal(await page.value(`document.querySelectorAll('#solutions [aria-pressed=true]').length`), 1);
   assert.ok((await page.value(`document.querySelectorAll('[data-panel=history] .shade').length`)) > 0, 'contact is shaded');
   assert.equal(await page.value(`document.querySelectorAll('[data-panel=multipliers] .multiplier').length`), 2);
-  assert.match(await page.value(`document.querySelector('#verdict').textContent`), /largest multiplier is 0\.\d+ in size \(error \S+\)/);
+  assert.match(await page.value(`document.querySelector('#verdict').textContent`), /largest multiplier has the modulus 0\.\d+ \(error \S+\)/);
   // The motion plays: two pictures of it differ.
   const painted = `document.querySelector('canvas').toDataURL()`;
   const first = await page.value(painted);

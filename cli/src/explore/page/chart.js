@@ -5,8 +5,8 @@ import { byId, inUnit, short, svg } from './dom.js';
 import { state } from './state.js';
 
 const KINDS = {
-  fold: 'the curve turns back: beyond, what one sees jumps elsewhere',
-  'period-doubling': 'the motion begins to repeat after twice the time',
+  fold: 'the curve turns back: beyond it there is no motion of this kind near by, and what moves jumps to another branch',
+  'period-doubling': 'from here on motions repeat after twice as many excitations',
   'symmetry-breaking': 'the motion loses its symmetry',
   'branch-point': 'two curves of motions cross',
   'neimark-sacker': 'a second frequency begins',
@@ -83,6 +83,9 @@ function horizontal(curve) {
   return domain;
 }
 
+// A model that declares no unit at all is one of numbers.
+const bare = (curve, unit) => (unit || curve.unit ? '' : ', dimensionless as declared');
+
 // Draws everything anew.
 export function draw({ dragging = false } = {}) {
   const target = svgOf();
@@ -93,8 +96,8 @@ export function draw({ dragging = false } = {}) {
   const others = [chart.shadow, ...chart.pins.map((pin) => pin.curve)].filter(comparable);
   const seen = chart.measured.filter((set) => set.plot === curve.plot && set.varied === curve.varied);
   const on = frame(width, height, {
-    x: { domain: horizontal(curve), scale: state.xscale, label: inUnit(curve.varied, curve.varied_unit) },
-    y: { domain: verticalOf([curve, ...others], seen, dragging), scale: state.yscale, label: inUnit(curve.label, state.yscale === 'db' ? `dB over 1 ${curve.unit}`.trim() : curve.unit) },
+    x: { domain: horizontal(curve), scale: state.xscale, label: inUnit(curve.varied, curve.varied_unit) + bare(curve, curve.varied_unit) },
+    y: { domain: verticalOf([curve, ...others], seen, dragging), scale: state.yscale, label: inUnit(curve.label, state.yscale === 'db' ? curve.unit ? `dB, 0 at 1 ${curve.unit}` : 'dB, 0 at the size 1' : curve.unit) },
   });
   chart.place = on;
   byId('missing').hidden = state.yscale === 'linear' || !flats(curve).some((flat) => flat.some((v, i) => i % 2 === 1 && v !== null && v <= 0));

@@ -2,7 +2,7 @@
 
 import { chart, draw } from './chart.js';
 import * as controls from './controls.js';
-import { byId } from './dom.js';
+import { byId, short } from './dom.js';
 import { showFound, showMeasure } from './found.js';
 import { outdate, pick } from './motions.js';
 import { ask } from './net.js';
@@ -27,9 +27,18 @@ function accept(curve, values) {
   byId('chart').classList.remove('old');
   if (session.isFine) controls.clearFaults();
   draw({ dragging });
+  saidBefore(values);
   showFound(curve, pick);
   showMeasure(curve.plot);
   note(`drawn-${curve.effort}`);
+}
+
+// Of what the curve behind is.
+function saidBefore(values) {
+  const old = chart.shadow;
+  byId('before-key').hidden = !old || old.varied !== chart.curve.varied || old.plot !== chart.curve.plot;
+  const others = Object.keys(values).filter((name) => Number.isFinite(old?.values?.[name]) && old.values[name] !== values[name]);
+  byId('before').textContent = others.length > 0 ? others.map((name) => `${name} = ${short(old.values[name], 4)}`).join(', ') : 'the last change';
 }
 
 async function onScreen() {

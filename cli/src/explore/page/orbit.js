@@ -38,7 +38,7 @@ function traces(title, about, x, y, lines, shades = []) {
   const parts = shades.map(([from, to]) => svg('rect', { class: 'shade', x: on.px(from), width: Math.max(0, on.px(to) - on.px(from)), y: on.box.top, height: on.box.bottom - on.box.top }));
   drawing.append(...parts, ...on.parts);
   lines.forEach((own, index) => {
-    const path = svg('path', { class: 'trace', d: line(flat(own.xs, own.ys), on.px, on.py) });
+    const path = svg('path', { class: ['trace', 'trace second', 'trace third'][index % 3], d: line(flat(own.xs, own.ys), on.px, on.py) });
     path.style.stroke = `var(${COLOURS[index % COLOURS.length]})`;
     if (own.name) path.append(svg('title', { text: own.name }));
     drawing.append(path);
@@ -52,13 +52,15 @@ function even(lines) {
   return own;
 }
 
-// Names in the colours of their lines, where there are several.
+const DASHES = ['solid', 'dashed', 'dotted'];
+
+// Names in the colours of their lines, where there are several, and how these are drawn.
 function several(items) {
   if (items.length < 2) return [];
   return items.flatMap((item, index) => {
     const name = el('b', { text: item.name });
     name.style.color = `var(${COLOURS[index % COLOURS.length]})`;
-    return [index === 0 ? ': ' : ', ', name];
+    return [index === 0 ? ': ' : ', ', name, ` (${DASHES[index % 3]})`];
   });
 }
 
@@ -85,7 +87,7 @@ function phases(orbit) {
 function forces(orbit) {
   const lines = orbit.contacts.map((contact) => ({ xs: contact.gaps, ys: contact.forces, name: contact.name }));
   const unit = orbit.contacts[0].unit;
-  traces('force', ['Force over gap', ...several(orbit.contacts), '; a positive gap is penetration'], 'gap', inUnit(`force of ${orbit.contacts.length === 1 ? orbit.contacts[0].name : 'contacts'}`, unit), lines);
+  traces('force', ['Force over gap', ...several(orbit.contacts), '; left of zero is open, right of it penetration'], 'gap (penetration)', inUnit(`force of ${orbit.contacts.length === 1 ? orbit.contacts[0].name : 'contacts'}`, unit), lines);
 }
 
 function spectrum(orbit) {
@@ -116,9 +118,9 @@ function multipliers(orbit) {
 function verdict(orbit) {
   const error = orbit.multiplier_error === null ? 'their error is not known' : `error ${short(orbit.multiplier_error, 1)}`;
   const largest = Math.max(0, ...orbit.multipliers.map(([re, im]) => Math.hypot(re, im)));
-  const size = orbit.error === null ? '' : `; size known to ${short(orbit.error, 1)} of itself`;
+  const size = orbit.error === null ? '' : `; peak-to-peak known to ${short(orbit.error, 1)} of itself`;
   const periods = orbit.periods === 1 ? '' : `; repeats after ${orbit.periods} periods of the excitation`;
-  return `${orbit.said}, ${orbit.verdict}: the largest multiplier is ${short(largest, 6)} in size (${error})${size}${periods}.${orbit.measured.endsWith(orbit.said.split(' ').pop()) ? '' : ` ${orbit.measured}.`}`;
+  return `${orbit.said}, ${orbit.verdict}: the largest multiplier has the modulus ${short(largest, 6)} (${error})${size}${periods}.${orbit.measured.endsWith(orbit.said.split(' ').pop()) ? '' : ` ${orbit.measured}.`}`;
 }
 
 // Everything of one orbit.

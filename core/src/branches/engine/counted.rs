@@ -27,6 +27,8 @@ use crate::event::EventKind;
 /// is one with it.
 const HALVINGS: usize = 8;
 const SHORTEST: f64 = 1e-7;
+/// Where a part is divided: in the middle, or beside it if there is no orbit found there.
+const PLACES: [f64; 5] = [0.5, 0.3, 0.7, 0.1, 0.9];
 /// Logarithms of moduli that are as small are those of multipliers that cross together, as copies do.
 const TOGETHER: f64 = 1e-6;
 
@@ -59,11 +61,10 @@ impl Engine {
                         (between || event.kind == EventKind::Fold)
                             && hides(problem, [&a, &b], event)
                     });
-                let options = self.options.newton;
-                let middle = hides.then(|| step_between([&a, &b]));
-                let middle =
-                    middle.and_then(|step| inside(problem.equations(), newton, step, 0.5, options));
-                let Some(middle) = middle.map(|point| Seen::at(problem, &point, a.falls)) else {
+                let middle = hides
+                    .then(|| self.middle(problem, newton, [&a, &b]))
+                    .flatten();
+                let Some(middle) = middle else {
                     continue;
                 };
                 for pair in [[&a, &middle], [&middle, &b]] {
@@ -81,6 +82,20 @@ impl Engine {
             }
             parts = halves;
         }
+    }
+
+    /// An orbit between two others.
+    fn middle(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        [a, b]: [&Seen; 2],
+    ) -> Option<Seen> {
+        let (step, options) = (step_between([a, b]), self.options.newton);
+        let found = PLACES
+            .into_iter()
+            .find_map(|part| inside(problem.equations(), newton, step, part, options))?;
+        Some(Seen::at(problem, &found, a.falls))
     }
 }
 

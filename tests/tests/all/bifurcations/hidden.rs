@@ -1,7 +1,9 @@
 //! Bifurcations that the signs of test functions at the ends of a step do not show, or show as something else.
 
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::{Branch, Event, EventKind, FrequencyResponse, Shooting, Stop, System};
+use hertzian::{
+    Branch, ContactEquation, Event, EventKind, FrequencyResponse, Shooting, Stop, System,
+};
 
 use crate::bifurcations::cascade::A1;
 
@@ -353,5 +355,38 @@ fn a_step_over_two_folds_is_made_again() {
             let apart = (a.point.value - b.point.value).abs();
             assert!(apart <= a.error + b.error && a.error < 1e-6, "{a} {b}");
         }
+    }
+}
+
+hertzian::oscillator! {
+    /// Six masses in a row, of which the first hits an elastic stop and the last is driven.
+    Row(q[6]) {
+        law stop(gap) { gap > 0 => 100*gap, else => 0 }
+        ddot(q[0]) + 0.03*(dot(q[0]) - dot(q[1])) + q[0] - q[1] + stop(q[0] - 1) = 0;
+        for i in 1..5 {
+            ddot(q[i]) + 0.03*(2*dot(q[i]) - dot(q[i-1]) - dot(q[i+1])) + 2*q[i] - q[i-1] - q[i+1] = 0;
+        }
+        ddot(q[5]) + 0.03*(2*dot(q[5]) - dot(q[4])) + 2*q[5] - q[4] = 0.1*cos(omega*t);
+    }
+}
+
+/// Close to a touch a pair of multipliers leaves the unit circle, and one of both comes back at minus one: at the ends of one step that looks
+/// like one multiplier that has left. The contact equation and shooting have the same places.
+#[test]
+fn a_doubling_hides_no_torus() {
+    let kinds = [EventKind::NeimarkSacker, EventKind::PeriodDoubling];
+    let request = FrequencyResponse::of(&Row {}).from(0.224).to(0.2275);
+    let by_shooting = request.clone().by(Shooting::new()).run().unwrap();
+    let by_contact_equation = request.by(ContactEquation::new()).run().unwrap();
+    assert_eq!(by_shooting.turns, []);
+    assert_eq!(by_contact_equation.turns, []);
+    for kind in kinds {
+        let mut places = [&by_shooting, &by_contact_equation].map(|branch| {
+            let found: Vec<f64> = branch.events(kind).map(|event| event.point.value).collect();
+            assert_eq!(found.len(), 1, "{kind} {found:?}");
+            found[0]
+        });
+        places.sort_by(f64::total_cmp);
+        assert!(places[1] - places[0] < 1e-13, "{kind} {places:?}");
     }
 }
