@@ -115,9 +115,12 @@ impl Run<'_> {
                 return Fits::Soon;
             }
         }
-        let long = |(first, switch): (usize, &Switch)| matches!(switch.told, Told::First { other, .. } if phases[other] - phases[first] > plan::LONG);
-        if skeleton.switches.iter().enumerate().any(long) {
-            return Fits::Soon;
+        for (first, switch) in skeleton.switches.iter().enumerate() {
+            if let Told::First { other, .. } = switch.told
+                && phases[other] - phases[first] > plan::LONG
+            {
+                return Fits::Soon;
+            }
         }
         let (Some(first), Some(last)) = (phases.first(), phases.last()) else {
             return Fits::Yes;

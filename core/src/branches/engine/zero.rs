@@ -6,7 +6,7 @@ use crate::branches::extreme::Bend;
 use crate::branches::problem::{BranchProblem, Change, Root, Test, TestValue, Zero, ZeroOutcome};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::{CurvePoint, Step, Stop};
-use crate::continuation::locate::{Located, locate_beside};
+use crate::continuation::locate::{Located, locate, locate_beside};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::AsProblem;
 use crate::event::{EventKind, Turn};
@@ -208,8 +208,10 @@ impl<'s> Search<'s> {
         let (test, reference) = (self.change.test, self.reference());
         let aim = if is_crossing(problem, self.change) {
             Aim::Crossing
-        } else {
+        } else if problem.corners() {
             Aim::Below(problem.aim())
+        } else {
+            Aim::Beside(problem.aim())
         };
         let value = |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| match test {
             Test::Slope => at.parameter_slope(),
@@ -224,6 +226,8 @@ impl<'s> Search<'s> {
 pub(crate) enum Aim {
     /// The test function is driven below this.
     Below(f64),
+    /// The same, also where corrections fail in the middle of the step: where there is no corner, orbits are found beside.
+    Beside(f64),
     /// The matrix of Newton's method is singular there: interpolation.
     Crossing,
 }
@@ -250,6 +254,11 @@ pub(crate) fn root<P: AsProblem + ?Sized>(
             Some(Root { located, error })
         }
         Aim::Below(tolerance) => {
+            let located = locate(problem, newton, step, options, tolerance, value)?;
+            let error = 0.0;
+            Some(Root { located, error })
+        }
+        Aim::Beside(tolerance) => {
             let located = locate_beside(problem, newton, step, options, tolerance, value)?;
             let error = 0.0;
             Some(Root { located, error })
