@@ -13,6 +13,7 @@ use super::problem::ShootingProblem;
 use super::run::{Run, observe, relative};
 use super::tested::{Test, Tests};
 use crate::branches::engine::{self, Aim};
+use crate::branches::extreme;
 use crate::branches::moduli::multipliers;
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{Change, Root, Touch, Zero};
@@ -112,8 +113,10 @@ impl Run<'_> {
         let mut tested = Tested { equations, other };
         let aim = if change.kind == EventKind::BranchPoint {
             Aim::Crossing
-        } else {
+        } else if extreme::corners(self.problem.system.as_ref()) {
             Aim::Below(VANISHED)
+        } else {
+            Aim::Beside(VANISHED)
         };
         let test = Test::of(change.test);
         let value = |tested: &mut Tested<'_>, point: &CurvePoint| {
