@@ -1,6 +1,7 @@
 //! What every program does around its work: Ctrl-C, a line that shows how far it is, what is printed, and the exit code.
 
 use std::error::Error;
+use std::fmt;
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
@@ -29,12 +30,24 @@ pub struct Failed {
     pub code: u8,
 }
 
+impl Failed {
+    /// Bad input, or a file that cannot be used: a sentence, and exit code 2.
+    pub fn new(message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self { message, code: 2 }
+    }
+}
+
+/// What is said. It is no error of its own, which errors become one of.
+impl fmt::Display for Failed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
 impl<E: Error> From<E> for Failed {
     fn from(error: E) -> Self {
-        Self {
-            message: chain(&error).to_string(),
-            code: 2,
-        }
+        Self::new(chain(&error).to_string())
     }
 }
 

@@ -82,7 +82,6 @@ pub fn start(options: &Options) -> ExitCode {
 /// # Errors
 /// If the file is none of branches, there is no such branch in it, or a file cannot be written.
 pub fn show(options: &Options) -> Result<Ended, Failed> {
-    let failed = |message: String| Failed { message, code: 2 };
     let mut all = Vec::new();
     let mut summary = String::new();
     for path in &options.files {
@@ -91,10 +90,10 @@ pub fn show(options: &Options) -> Result<Ended, Failed> {
             // It may be one of a map.
             (Err(error), [_]) => {
                 let map = Map::read(path);
-                let map = map.map_err(|_| failed(chain(&error).to_string()))?;
-                return shown(&map, options).map_err(failed);
+                let map = map.map_err(|_| Failed::new(chain(&error).to_string()))?;
+                return shown(&map, options).map_err(Failed::new);
             }
-            (Err(error), _) => return Err(failed(chain(&error).to_string())),
+            (Err(error), _) => return Err(Failed::new(chain(&error).to_string())),
         };
         if options.files.len() > 1 {
             // Writing to a string does not fail.
@@ -116,7 +115,7 @@ pub fn show(options: &Options) -> Result<Ended, Failed> {
         None => 1..=count,
         Some(number) if (1..=count).contains(&number) => number..=number,
         Some(number) => {
-            return Err(failed(format!(
+            return Err(Failed::new(format!(
                 "--branch {number}: there are {count} branches in {}",
                 listed(&options.files)
             )));
@@ -124,8 +123,8 @@ pub fn show(options: &Options) -> Result<Ended, Failed> {
     };
     let numbered: Vec<(usize, &Branch)> =
         numbers.map(|number| (number, &all[number - 1])).collect();
-    describe(&mut summary, &numbered, options).map_err(failed)?;
-    write(options, &numbered).map_err(failed)?;
+    describe(&mut summary, &numbered, options).map_err(Failed::new)?;
+    write(options, &numbered).map_err(Failed::new)?;
     Ok(Ended {
         summary,
         complaints: Vec::new(),

@@ -132,6 +132,13 @@ impl Picture {
         }
     }
 
+    /// Whether what linear propagation of the distributions says is drawn over a histogram.
+    #[must_use]
+    pub fn linear(mut self, wanted: bool) -> Self {
+        self.linear = wanted;
+        self
+    }
+
     /// Whether curves of folds and doublings are followed and drawn over a map.
     #[must_use]
     pub fn tracks(mut self, wanted: bool) -> Self {
@@ -164,6 +171,13 @@ impl Keep {
     #[must_use]
     pub fn largest<'k>(mut self, signals: impl IntoIterator<Item = &'k str>) -> Self {
         self.largest = signals.into_iter().map(str::to_owned).collect();
+        self
+    }
+
+    /// How the place of every event moves with every parameter.
+    #[must_use]
+    pub fn sensitivities(mut self, wanted: bool) -> Self {
+        self.sensitivities = wanted;
         self
     }
 

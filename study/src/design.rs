@@ -194,6 +194,25 @@ impl Designed {
         }
     }
 
+    /// One variant of the same parameters.
+    pub(crate) fn one(&self, values: Vec<f64>) -> Self {
+        Self {
+            names: self.names.clone(),
+            count: 1,
+            way: Way::List(vec![values]),
+        }
+    }
+
+    /// Mean and standard deviation of everything that varies, where it has a distribution.
+    pub(crate) fn moments(&self) -> Option<Vec<[f64; 2]>> {
+        match &self.way {
+            Way::Cube { distributions, .. } => {
+                Some(distributions.iter().map(Distribution::moments).collect())
+            }
+            _ => None,
+        }
+    }
+
     /// The side of a grid over one parameter, with its name.
     pub(crate) fn side(&self) -> Option<(&str, &[f64])> {
         match (&self.way, &self.names[..]) {

@@ -3,16 +3,16 @@
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use hertzian::bifurcation::{Bifurcations, Cell, CellVerdict, Diagram, Reason, Settling};
+use hertzian::bifurcation::{Bifurcations, Diagram, Reason, Settling};
 use hertzian::error::{ErrorKind, chain};
-use hertzian::observe::Wanted;
 use hertzian::{
-    Branch, Cancel, ContactEquation, Error, Event, FrequencyResponse, HarmonicBalance, OrbitMethod,
-    Point, Shooting, Valued,
+    Branch, Cancel, ContactEquation, Error, FrequencyResponse, HarmonicBalance, OrbitMethod,
+    Shooting, Valued,
 };
 
 use crate::plan::{Method, What};
-use crate::study::{Prepared, is_interrupted};
+use crate::rows::Orbit;
+use crate::study::Prepared;
 use crate::table::{About, Value, kind};
 
 /// What came of a variant.
@@ -78,10 +78,10 @@ fn said(panic: &(dyn std::any::Any + Send)) -> &str {
 }
 
 /// A variant that is computed.
-struct Of<'s> {
-    study: &'s Prepared,
-    begin: Vec<Value>,
-    found: Found,
+pub(crate) struct Of<'s> {
+    pub(crate) study: &'s Prepared,
+    pub(crate) begin: Vec<Value>,
+    pub(crate) found: Found,
 }
 
 impl Of<'_> {
@@ -261,58 +261,6 @@ impl Of<'_> {
         }
     }
 
-    fn event(&self, branch: &Branch, event: &Event) -> Result<Orbit, Error> {
-        let orbit = self.orbit(branch, &event.point, kind(event))?;
-        // At the very value where the branch turns, an orbit is not known at all: the error there is that of the value.
-        let size_error = if event.kind.turns() {
-            Value::Missing
-        } else {
-            orbit.size_error
-        };
-        Ok(Orbit {
-            error: Value::Number(event.error),
-            size_error,
-            ..orbit
-        })
-    }
-
-    fn orbit(&self, branch: &Branch, point: &Point, kind: String) -> Result<Orbit, Error> {
-        let measured = |wanted: &Wanted| branch.measured(wanted, point).map(Value::from);
-        let measured = self.study.signals.iter().map(measured);
-        Ok(Orbit {
-            kind,
-            period: Value::count(point.orbit.period),
-            value: Value::Number(point.value),
-            error: Value::Missing,
-            measured: measured.collect::<Result<_, _>>()?,
-            size_error: point.error.into(),
-            verdict: point.stability.verdict.to_string(),
-            ended: branch.stopped.to_string(),
-        })
-    }
-
-    fn branch_row(&mut self, about: About, branch: usize, orbit: Orbit) {
-        if self.study.plan.request.what == What::Solutions {
-            return;
-        }
-        let mut row = self.begin.clone();
-        row.push(Value::text(about.name()));
-        row.push(Value::text(orbit.kind));
-        row.push(if about == About::Failed {
-            Value::Missing
-        } else {
-            Value::count(branch)
-        });
-        row.extend([orbit.period, orbit.value, orbit.error]);
-        let mut measured = orbit.measured;
-        measured.resize(self.study.signals.len(), Value::Missing);
-        row.extend(measured);
-        row.push(orbit.size_error);
-        row.push(Value::text(orbit.verdict));
-        row.push(Value::text(orbit.ended));
-        self.found.rows.push(row);
-    }
-
     /// Keeps a branch, if that is asked for.
     fn keep(&mut self, branch: Branch) {
         if self.study.plan.keep.branches {
@@ -334,96 +282,10 @@ impl Of<'_> {
         }
         Ok(())
     }
-
-    fn cell_row(&mut self, value: f64, cell: &Cell, signal: &str) {
-        let failed = cell.reason.is_some();
-        let mut row = self.begin.clone();
-        row.push(Value::text(
-            if failed { About::Failed } else { About::Cell }.name(),
-        ));
-        row.push(Value::Number(value));
-        let counts = [
-            cell.stable,
-            cell.unstable,
-            cell.undecided,
-            cell.missed,
-            cell.motions,
-            cell.restless,
-        ];
-        row.extend(counts.map(|count| {
-            if failed {
-                Value::Missing
-            } else {
-                Value::count(count)
-            }
-        }));
-        row.push(cell.largest.into());
-        row.push(Value::text(if cell.largest.is_some() {
-            signal
-        } else {
-            ""
-        }));
-        let periods: Vec<String> = cell.periods.iter().map(ToString::to_string).collect();
-        row.push(Value::text(periods.join(" ")));
-        let verdict = cell.verdict();
-        let verdict = if verdict == CellVerdict::Failed {
-            String::new()
-        } else {
-            verdict.to_string()
-        };
-        row.push(Value::text(verdict));
-        row.push(Value::text(
-            cell.reason
-                .as_ref()
-                .map(ToString::to_string)
-                .unwrap_or_default(),
-        ));
-        self.found.failed |= failed;
-        self.found.rows.push(row);
-    }
-
-    /// The row of a variant that could not be computed.
-    fn fail(&mut self, why: &str) {
-        self.found.failed = true;
-        if self.study.plan.request.what == What::Solutions {
-            let mut row = self.begin.clone();
-            row.push(Value::text(About::Failed.name()));
-            row.resize(self.study.columns.len() - 1, Value::Missing);
-            row.push(Value::text(why));
-            self.found.rows.push(row);
-            return;
-        }
-        let orbit = Orbit {
-            ended: why.to_owned(),
-            ..Orbit::default()
-        };
-        self.branch_row(About::Failed, 0, orbit);
-    }
 }
 
-/// What a row says of an orbit.
-struct Orbit {
-    kind: String,
-    period: Value,
-    value: Value,
-    error: Value,
-    measured: Vec<Value>,
-    size_error: Value,
-    verdict: String,
-    ended: String,
-}
-
-impl Default for Orbit {
-    fn default() -> Self {
-        Self {
-            kind: String::new(),
-            period: Value::Missing,
-            value: Value::Missing,
-            error: Value::Missing,
-            measured: Vec::new(),
-            size_error: Value::Missing,
-            verdict: String::new(),
-            ended: String::new(),
-        }
-    }
+/// Whether a branch was interrupted.
+fn is_interrupted(branch: &Branch) -> bool {
+    branch.stopped == hertzian::Stop::Interrupted
+        || branch.begin == Some(hertzian::Stop::Interrupted)
 }

@@ -47,6 +47,7 @@ mod names;
 mod parquet;
 mod pictures;
 mod plan;
+mod rows;
 mod run;
 mod spread;
 mod study;

@@ -33,6 +33,12 @@ impl Names {
         self.facts.parameters.iter().any(|facts| facts.name != name)
     }
 
+    /// The names of all but one.
+    pub(crate) fn besides(&self, name: &str) -> Vec<String> {
+        let others = self.names.iter().filter(|other| *other != name);
+        others.cloned().collect()
+    }
+
     pub(crate) fn place(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|known| known == name)
     }

@@ -73,6 +73,9 @@ pub struct Picture {
     /// Whether curves of folds and doublings are followed and drawn over a map. Default: no.
     #[serde(default)]
     pub tracks: bool,
+    /// Whether what linear propagation of the distributions says is drawn over a histogram. Default: no.
+    #[serde(default)]
+    pub linear: bool,
 }
 
 /// What a picture shows.
@@ -335,6 +338,9 @@ pub struct Keep {
     /// Rows for the orbits at these values of what varies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<Spread>,
+    /// Whether events say how their place moves with every parameter, a column each, and one for its error. Default: no.
+    #[serde(default)]
+    pub sensitivities: bool,
     /// Whether every branch is kept as a file of its own, which `hertzian show` reads. Default: no.
     #[serde(default)]
     pub branches: bool,

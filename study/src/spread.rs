@@ -6,11 +6,22 @@
 //! ```text
 //! value = F^-1( F(from) + u (F(to) - F(from)) )                                                               (1)
 //! ```
+//!
+//! Its mean and its variance are then, with `a` and `b` the ends in deviations from the mean, `f` the density of the standard normal
+//! distribution and `Z` the part between the ends,
+//!
+//! ```text
+//! mean + deviation (f(a) - f(b)) / Z,
+//! deviation^2 (1 + (a f(a) - b f(b)) / Z - ((f(a) - f(b)) / Z)^2)                                               (2)
+//! ```
+//!
+//! Source: Johnson, Kotz and Balakrishnan (1994), Continuous univariate distributions, volume 1, 13.10.
 
 use std::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::distribution::{Continuous, ContinuousCDF, Normal};
+use statrs::statistics::Distribution as _;
 
 /// How one parameter varies.
 ///
@@ -246,6 +257,82 @@ impl Distribution {
         match self {
             Self::Between { spread, from, to } => spread.between(*from, *to, part),
             Self::Normal { normal, cut } => normal.inverse_cdf(cut[0] + part * (cut[1] - cut[0])),
+        }
+    }
+
+    /// Its mean and its standard deviation: of a range `(from + to) / 2` and `(to - from) / sqrt(12)`, in the logarithm those of its density
+    /// `1 / (value ln(to / from))`, of a normal distribution (2).
+    pub(crate) fn moments(&self) -> [f64; 2] {
+        match self {
+            Self::Between { spread, from, to } if spread.scale == Some(SpreadScale::Log) => {
+                let width = (to / from).ln();
+                let mean = (to - from) / width;
+                let square = (to + from) * (to - from) / (2.0 * width);
+                [mean, (square - mean * mean).max(0.0).sqrt()]
+            }
+            Self::Between { from, to, .. } => [0.5 * (from + to), (to - from) / 12_f64.sqrt()],
+            Self::Normal { normal, cut } => {
+                let mean = normal.mean().unwrap_or(f64::NAN);
+                let deviation = normal.std_dev().unwrap_or(f64::NAN);
+                // At an end that is cut off nowhere the density vanishes, and so does its product with the distance.
+                let ends = cut.map(|part| {
+                    let value = normal.inverse_cdf(part);
+                    let away = (value - mean) / deviation;
+                    let density = deviation * normal.pdf(value);
+                    let product = if away.is_finite() {
+                        away * density
+                    } else {
+                        0.0
+                    };
+                    [density, product]
+                });
+                let inside = cut[1] - cut[0];
+                let [first, second] =
+                    [0, 1].map(|power| (ends[0][power] - ends[1][power]) / inside);
+                let variance = (1.0 + second - first * first).max(0.0);
+                [mean + deviation * first, deviation * variance.sqrt()]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_are_those_of_the_distributions() {
+        let cut = |from: Option<f64>, to: Option<f64>| Spread {
+            from,
+            to,
+            ..Spread::normal(10.0, 0.5)
+        };
+        let log = Spread {
+            scale: Some(SpreadScale::Log),
+            ..Spread::uniform(1.0, std::f64::consts::E)
+        };
+        let (root, e) = ((2.0 / std::f64::consts::PI).sqrt(), std::f64::consts::E);
+        for (spread, mean, variance) in [
+            (Spread::uniform(2.0, 5.0), 3.5, 0.75),
+            // Of the density 1/x from 1 to e.
+            (log, e - 1.0, (e * e - 1.0) / 2.0 - (e - 1.0).powi(2)),
+            (cut(None, None), 10.0, 0.25),
+            // Half of a normal distribution.
+            (
+                cut(Some(10.0), None),
+                10.0 + 0.5 * root,
+                0.25 * (1.0 - root * root),
+            ),
+            // Of the standard normal distribution within one deviation the variance is 1 - 2 f(1) / 0.6827.
+            (cut(Some(9.5), Some(10.5)), 10.0, 0.25 * 0.291_125_094_772_8),
+        ] {
+            let [found, deviation] = spread.distribution().expect("a distribution").moments();
+            assert!((found - mean).abs() < 1e-9, "{spread:?}: {found} {mean}");
+            let found = deviation * deviation;
+            assert!(
+                (found - variance).abs() < 1e-9,
+                "{spread:?}: {found} {variance}"
+            );
         }
     }
 }

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use hertzian::observe::Wanted;
 use hertzian::power::Instructions;
-use hertzian::{Branch, EventKind, System, Valued};
+use hertzian::{EventKind, System, Valued};
 
-use crate::checks::check_request;
+use crate::checks::{at_key, check_request, kinds, signals, within};
 use crate::design::{Designed, List};
 use crate::error::StudyError;
 use crate::folder::described;
@@ -173,6 +173,8 @@ pub struct Prepared {
     pub(crate) at: Vec<f64>,
     pub(crate) signals: Vec<Wanted>,
     pub(crate) largest: Vec<Wanted>,
+    /// What places of events are differentiated by.
+    pub(crate) by: Vec<String>,
     kinds: Option<Vec<EventKind>>,
     /// With the values that do not vary.
     pub(crate) system: Arc<dyn System>,
@@ -181,9 +183,6 @@ pub struct Prepared {
     places: Vec<usize>,
     block: usize,
 }
-
-/// More values than this are not looked at of one variant.
-const MOST_VALUES: usize = 1_000_000;
 
 impl Prepared {
     fn new(study: &Study) -> Result<Self, StudyError> {
@@ -223,8 +222,14 @@ impl Prepared {
         plan.keep.signals = Some(signals.iter().map(ToString::to_string).collect());
         let shown: Vec<String> = signals.iter().map(ToString::to_string).collect();
         let places = designed.names.iter().map(|name| order(name)).collect();
+        let by = if plan.keep.sensitivities {
+            names.besides(&plan.request.vary)
+        } else {
+            Vec::new()
+        };
         let prepared = Self {
-            columns: columns(plan.request.what, &designed.names, &shown),
+            columns: columns(plan.request.what, &designed.names, &shown, &by),
+            by,
             kinds: kinds(&plan.keep)?,
             system: Arc::clone(&study.system),
             model: study.model.clone(),
@@ -317,6 +322,20 @@ impl Prepared {
         })
     }
 
+    /// The study of one variant, with these values, and of how its events move with them; nothing else is kept.
+    pub(crate) fn middle(&self, values: Vec<f64>) -> Self {
+        let by = self.designed.names.clone();
+        Self {
+            columns: columns(self.plan.request.what, &by, &[], &by),
+            designed: self.designed.one(values),
+            at: Vec::new(),
+            signals: Vec::new(),
+            largest: Vec::new(),
+            by,
+            ..self.clone()
+        }
+    }
+
     /// Whether an event has a row.
     pub(crate) fn keeps(&self, kind: EventKind) -> bool {
         let kinds = self.kinds.as_ref();
@@ -346,92 +365,4 @@ fn block(plan: &Plan, count: usize) -> Result<usize, StudyError> {
         Some(block) => Ok(block.min(count)),
         None => Ok((((count as f64).sqrt() / 4.0).round() as usize).max(1)),
     }
-}
-
-fn at_key(what: What) -> &'static str {
-    match what {
-        What::Solutions => "request.at",
-        _ => "keep.at",
-    }
-}
-
-/// Whether values of what varies are in its range.
-fn within(at: Vec<f64>, plan: &Plan) -> Result<Vec<f64>, StudyError> {
-    let Request { from, to, what, .. } = plan.request;
-    let key = at_key(what);
-    if what == What::Solutions && at.is_empty() {
-        let message = "solutions are looked for at values: give some";
-        return Err(StudyError::value(key, message));
-    }
-    if at.len() > MOST_VALUES {
-        let message = format!("{} values are more than {MOST_VALUES}", at.len());
-        return Err(StudyError::value(key, message));
-    }
-    let range = from.min(to)..=from.max(to);
-    match at.iter().find(|value| !range.contains(value)) {
-        Some(value) => {
-            let message = format!("{value} is not between from = {from} and to = {to}");
-            Err(StudyError::value(key, message))
-        }
-        None => Ok(at),
-    }
-}
-
-/// The signals of all rows, and those whose largest value has a row.
-fn signals(system: &Arc<dyn System>, plan: &Plan) -> Result<[Vec<Wanted>; 2], StudyError> {
-    let facts = system.facts();
-    let leading = facts.outputs.first().map(|output| output.name.as_ref());
-    let leading = leading.or(facts.coordinates.first().map(AsRef::as_ref));
-    let default = || {
-        leading
-            .map(|name| format!("{name}:p2p"))
-            .into_iter()
-            .collect()
-    };
-    let model = hertzian::Model::of(&**system);
-    let read = |key: &'static str, texts: Vec<String>| {
-        let wanted = texts.into_iter().map(|text| {
-            let failed = |message: String| StudyError::value(key, format!("`{text}`: {message}"));
-            let wanted: Wanted = text
-                .parse()
-                .map_err(|error: hertzian::RequestError| failed(error.to_string()))?;
-            model
-                .check(&wanted)
-                .map_err(|error| failed(error.to_string()))?;
-            Ok(wanted)
-        });
-        wanted.collect::<Result<Vec<_>, StudyError>>()
-    };
-    let shown = plan.keep.signals.clone().unwrap_or_else(default);
-    let shown = read("keep.signals", shown)?;
-    for (place, signal) in shown.iter().enumerate() {
-        if shown[..place].contains(signal) {
-            return Err(StudyError::value(
-                "keep.signals",
-                format!("`{signal}` is there twice"),
-            ));
-        }
-    }
-    Ok([shown, read("keep.largest", plan.keep.largest.clone())?])
-}
-
-/// The kinds of events that have rows.
-fn kinds(keep: &Keep) -> Result<Option<Vec<EventKind>>, StudyError> {
-    let Some(names) = &keep.events else {
-        return Ok(None);
-    };
-    let kind = |name: &String| {
-        name.parse().map_err(|_| {
-            let known: Vec<String> = EventKind::ALL.iter().map(ToString::to_string).collect();
-            let message = format!("no event `{name}`: there are {}", known.join(", "));
-            StudyError::value("keep.events", message)
-        })
-    };
-    names.iter().map(kind).collect::<Result<_, _>>().map(Some)
-}
-
-/// Whether a branch was interrupted.
-pub(crate) fn is_interrupted(branch: &Branch) -> bool {
-    branch.stopped == hertzian::Stop::Interrupted
-        || branch.begin == Some(hertzian::Stop::Interrupted)
 }

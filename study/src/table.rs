@@ -1,6 +1,7 @@
 //! The table of a study: columns, and rows of values as text that is read back to the same bits.
 
 use hertzian::Event;
+use hertzian::bifurcation::Cell;
 
 use crate::plan::What;
 
@@ -82,26 +83,55 @@ impl Value {
     }
 }
 
-/// The columns of a study with these names of what varies and these signals.
-pub(crate) fn columns(what: What, names: &[String], signals: &[String]) -> Vec<Column> {
-    use ColumnKind::{Number, Text, Whole};
-    let column = |name: &str, kind: ColumnKind| Column {
-        name: name.to_owned(),
-        kind,
+/// Columns of how the place of an event moves with these: the derivative by each with its error, and why there are none.
+pub(crate) fn moved(by: &[String]) -> impl Iterator<Item = Column> {
+    let of = |name: &String| {
+        let names = [format!("by_{name}"), format!("error_by_{name}")];
+        names.map(|name| column(&name, ColumnKind::Number))
     };
-    let mut columns = vec![column("variant", Whole)];
-    columns.extend(names.iter().map(|name| column(name, Number)));
-    columns.push(column("row", Text));
+    let why = (!by.is_empty()).then(|| column("without", ColumnKind::Text));
+    by.iter().flat_map(of).chain(why)
+}
+
+fn column(name: &str, kind: ColumnKind) -> Column {
+    let name = name.to_owned();
+    Column { name, kind }
+}
+
+/// The columns of a study with these names of what varies, these signals, and what places of events move with. What varies under the name of
+/// another column has one with an underscore.
+pub(crate) fn columns(
+    what: What,
+    names: &[String],
+    signals: &[String],
+    by: &[String],
+) -> Vec<Column> {
+    let rest = about(what, signals, by);
+    let mut columns = vec![column("variant", ColumnKind::Whole)];
+    for name in names {
+        let mut own = column(name, ColumnKind::Number);
+        let is_taken = |own: &Column| {
+            let others = columns.iter().chain(&rest);
+            let names = names.iter().filter(|other| *other != name);
+            let mut all = others.map(|other| &other.name).chain(names);
+            all.any(|other| *other == own.name)
+        };
+        while is_taken(&own) {
+            own.name.push('_');
+        }
+        columns.push(own);
+    }
+    columns.extend(rest);
+    columns
+}
+
+/// The columns after those of what varies.
+fn about(what: What, signals: &[String], by: &[String]) -> Vec<Column> {
+    use ColumnKind::{Number, Text, Whole};
+    let mut columns = vec![column("row", Text)];
     if what == What::Solutions {
         columns.push(column("value", Number));
-        for name in [
-            "stable",
-            "unstable",
-            "undecided",
-            "missed",
-            "motions",
-            "restless",
-        ] {
+        for name in Cell::COUNTED {
             columns.push(column(name, Whole));
         }
         columns.push(column("largest", Number));
@@ -115,6 +145,7 @@ pub(crate) fn columns(what: What, names: &[String], signals: &[String]) -> Vec<C
         columns.push(column("error", Number));
         columns.extend(signals.iter().map(|signal| column(signal, Number)));
         columns.push(column("size_error", Number));
+        columns.extend(moved(by));
     }
     columns.push(column("verdict", Text));
     columns.push(column("ended", Text));

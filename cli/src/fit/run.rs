@@ -11,22 +11,10 @@ use hertzian::{Cancel, System};
 use hertzian_fit::{Comparison, DataSet, Fit, FitError, Fitted, Jump, Loss};
 
 use super::options::Options;
-use crate::program::Ended;
+use crate::program::{Ended, Failed};
 use crate::response::model_file::{self, ModelError};
 use crate::response::models;
 use crate::response::progress::Progress;
-
-/// Why nothing came of it: a sentence.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Failure(String);
-
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Failure {}
 
 /// A table that is longer than this many bytes is none that a curve is fitted to.
 const LONGEST: u64 = 50_000_000;
@@ -35,20 +23,20 @@ const LONGEST: u64 = 50_000_000;
 ///
 /// # Errors
 /// If the oscillator, the table or an option cannot be used, or a file cannot be written.
-pub fn run(options: &Options, cancel: &Cancel, progress: &mut Progress) -> Result<Ended, Failure> {
-    let system = system(options).map_err(Failure)?;
+pub fn run(options: &Options, cancel: &Cancel, progress: &mut Progress) -> Result<Ended, Failed> {
+    let system = system(options).map_err(Failed::new)?;
     let path = options.data();
-    let sets = table(path, &*system, options.model.omega).map_err(Failure)?;
-    let sets = jumped(sets, options).map_err(Failure)?;
+    let sets = table(path, &*system, options.model.omega).map_err(Failed::new)?;
+    let sets = jumped(sets, options).map_err(Failed::new)?;
     let asked = asked(options, &*system, sets).cancel(cancel);
-    let fitted = fitted(&asked, progress).map_err(|error| Failure(chain(&error).to_string()))?;
+    let fitted = fitted(&asked, progress)?;
     let mut summary = fitted.to_string();
     let mut complaints = Vec::new();
     if !fitted.converged {
         complaints.push("it did not converge: these are the best values until then".to_owned());
     }
     if !options.against.is_empty() && fitted.converged {
-        summary += &compared(options, &fitted, &mut complaints).map_err(Failure)?;
+        summary += &compared(options, &fitted, &mut complaints).map_err(Failed::new)?;
     }
     written(options, &fitted, &mut summary)?;
     Ok(Ended {
@@ -194,10 +182,11 @@ fn compared(
 }
 
 /// Writes the files that were asked for, and says which.
-fn written(options: &Options, fitted: &Fitted, summary: &mut String) -> Result<(), Failure> {
-    let mut write = |path: &Path, contents: String| {
+fn written(options: &Options, fitted: &Fitted, summary: &mut String) -> Result<(), Failed> {
+    let mut write = |path: &Path, contents: String| -> Result<(), Failed> {
         let written = hertzian_file::write(path, contents);
-        written.map_err(|error| Failure(format!("cannot write {}: {error}", path.display())))?;
+        written
+            .map_err(|error| Failed::new(format!("cannot write {}: {error}", path.display())))?;
         // Writing to a string does not fail.
         let _ = writeln!(summary, "written    {}", path.display());
         Ok(())

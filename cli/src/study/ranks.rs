@@ -6,8 +6,8 @@ use hertzian::Cancel;
 use hertzian_study::{Folder, Prepared, Ranks};
 
 use super::options::Options;
-use super::run::{self, Failure};
-use crate::program::Ended;
+use super::run;
+use crate::program::{Ended, Failed};
 use crate::response::progress::Progress;
 
 /// The other ranks, where there are some and all of the study is asked for.
@@ -25,7 +25,7 @@ pub(super) fn run(
     folder: &Path,
     cancel: &Cancel,
     progress: &mut Progress,
-) -> Result<Ended, Failure> {
+) -> Result<Ended, Failed> {
     // A rank without a folder must not leave in silence: the others would wait for it.
     let folder = Folder::open(folder, study);
     let (ran, folder) = ranks.run(study, folder, cancel, &mut run::shown(progress))?;

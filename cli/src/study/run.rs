@@ -1,6 +1,5 @@
 //! Runs a study, a part of it, or a merge, and sums up.
 
-use std::fmt;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -11,44 +10,26 @@ use hertzian_study::{Folder, Merged, Part, Plan, Prepared, Ran, Runner, StudyErr
 
 use super::options::Options;
 use super::read;
-use crate::program::Ended;
+use crate::program::{Ended, Failed};
 use crate::response::progress::Progress;
-
-/// Why nothing came of it: a sentence.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Failure(String);
-
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Failure {}
-
-impl From<StudyError> for Failure {
-    fn from(error: StudyError) -> Self {
-        Self(chain(&error).to_string())
-    }
-}
 
 /// Computes what is asked for, writes the table, and sums up. Cancelling ends it after what is kept.
 ///
 /// # Errors
 /// If the study file cannot be used, or a file cannot be written.
-pub fn run(options: &Options, cancel: &Cancel, progress: &mut Progress) -> Result<Ended, Failure> {
+pub fn run(options: &Options, cancel: &Cancel, progress: &mut Progress) -> Result<Ended, Failed> {
     let file = options.file.display();
     let (study, plan) = read::study(&options.file).map_err(|message| {
         // A fault of the study file says where it is.
         let known = message.starts_with(&file.to_string());
-        Failure(if known {
+        Failed::new(if known {
             message
         } else {
             format!("{file}: {message}")
         })
     })?;
     let prepared = study.prepare();
-    let study = prepared.map_err(|error| Failure(format!("{file}: {}", chain(&error))))?;
+    let study = prepared.map_err(|error| Failed::new(format!("{file}: {}", chain(&error))))?;
     let place = folder(options, &plan);
     if let Some(folders) = &options.merge {
         let first = [place];
@@ -82,7 +63,7 @@ pub(super) fn table(
     ran: Option<&Ran>,
     cancel: &Cancel,
     progress: &mut Progress,
-) -> Result<Ended, Failure> {
+) -> Result<Ended, Failed> {
     progress.update(|| "one table of all".to_owned());
     let mut merged = study.merge(folders)?;
     progress.update(|| "pictures".to_owned());
@@ -207,8 +188,8 @@ fn ended(merged: &Merged, ran: Option<&Ran>) -> Ended {
     }
     if merged.failed > 0 {
         complaints.push(format!(
-            "{} variants could not be computed: their rows `failed` say why",
-            merged.failed
+            "{} of {} variants could not be computed: rows `failed` say why",
+            merged.failed, merged.variants
         ));
     }
     let computed = ran.map(|ran| said(ran, false)).unwrap_or_default();

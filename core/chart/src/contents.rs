@@ -16,6 +16,8 @@ use super::{Chart, Line, Note, Series};
 const COLOURS: [&str; 7] = [
     "#0b4f8a", "#d55e00", "#56b4e9", "#000000", "#007a5a", "#e69f00", "#aa4f8c",
 ];
+/// By how much the white line behind one upon cells is wider than it.
+const HALO: f64 = 2.8;
 const REFERENCE: Pen = pen("#666666", 1.4, "12 4 2 4");
 
 /// What is inside the frame, in pixels.
@@ -133,6 +135,12 @@ impl Contents {
         for (colour, shape, places) in &self.along {
             for &place in places {
                 along::draw(svg, *shape, place, colour);
+            }
+        }
+        // Upon cells of any lightness a line is seen by a white one that is wider, and that never lies upon another line.
+        if self.covered.is_some() {
+            for (Pen { width, .. }, lines) in &self.traces {
+                svg.lines(lines, pen("#ffffff", width + HALO, ""));
             }
         }
         for (pen, lines) in &self.traces {

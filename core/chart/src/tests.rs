@@ -182,6 +182,9 @@ fn motions_dots_and_cells_have_their_place_and_legend() {
         assert!(svg.contains(part), "{part}");
     }
     assert!(!svg.contains("NaN"));
+    // Behind each motion a line in white: on dark cells a dark line would not be seen.
+    let white = "stroke=\"#ffffff\" stroke-width=\"4\"";
+    assert_eq!(svg.matches(white).count(), 2);
     let page = Page::new(2)
         .chart(chart.clone())
         .chart(chart)

@@ -1,11 +1,15 @@
 //! How often an event lies where: a histogram with quantiles.
 //!
-//! Bins are as wide as Freedman and Diaconis (1981) say: twice the distance of the quartiles over the cube root of the number.
+//! Bins are as wide as Freedman and Diaconis (1981) say: twice the distance of the quartiles over the cube root of the number. A distribution is
+//! drawn over them by its density times the width of a bin and the number of values.
 
 use std::io;
 
 use hertzian::chart::{Chart, Series};
 
+use statrs::distribution::{Continuous, ContinuousCDF, Normal};
+
+use super::linear::linear;
 use super::{along, better, is, number, percent, place, quantile, quantiles};
 use crate::merge::Source;
 use crate::plan::Picture;
@@ -13,6 +17,8 @@ use crate::table::Value;
 
 /// Bins, at least and at most.
 const BINS: [f64; 2] = [5.0, 60.0];
+/// Parts of a density that is drawn.
+const POINTS: usize = 100;
 
 /// The chart.
 pub(super) fn chart(source: &Source<'_>, picture: &Picture) -> io::Result<Chart> {
@@ -30,29 +36,48 @@ pub(super) fn chart(source: &Source<'_>, picture: &Picture) -> io::Result<Chart>
     let (Some(&low), Some(&high)) = (places.first(), places.last()) else {
         return Ok(chart.remark(format!("no variant has an event of kind {kind}")));
     };
-    let (outline, most) = outline(&places, low, high);
-    let label = "variants".to_owned();
-    let bars = Series {
-        label,
-        points: outline,
-    };
+    let Bars { outline, most, bin } = bars(&places, low, high);
+    let bars = Series::new("variants", outline);
     chart = chart.trace(bars.clone()).area(bars);
-    let mut said = Vec::new();
-    for part in quantiles(picture) {
-        let value = quantile(&places, part);
-        said.push(format!("{} {value:.6}", percent(part)));
-        let line = vec![[value, 0.0], [value, most]];
-        let label = if said.len() == 1 {
-            "quantiles".to_owned()
-        } else {
-            String::new()
-        };
-        chart = chart.reference(Series {
-            label,
-            points: line,
-        });
+    let parts = quantiles(picture);
+    for (number, part) in parts.iter().enumerate() {
+        let value = quantile(&places, *part);
+        let label = if number == 0 { "quantiles" } else { "" };
+        let line = [[value, 0.0], [value, most]];
+        chart = chart.reference(Series::new(label, line));
     }
-    Ok(chart.remark(format!("quantiles: {}", said.join(", "))))
+    let said = |value: &dyn Fn(f64) -> f64| {
+        let parts = parts.iter();
+        let said = parts.map(|part| format!("{} {:.6}", percent(*part), value(*part)));
+        said.collect::<Vec<_>>().join(", ")
+    };
+    chart = chart.remark(format!(
+        "quantiles: {}",
+        said(&|part| quantile(&places, part))
+    ));
+    if !picture.linear {
+        return Ok(chart);
+    }
+    Ok(match linear(study, picture, kind) {
+        Ok(normal) => chart
+            .trace(density(normal, bin * places.len() as f64))
+            .remark(format!(
+                "linear propagation: {}",
+                said(&|part| normal.inverse_cdf(part))
+            )),
+        Err(why) => chart.remark(format!("no linear propagation: {why}")),
+    })
+}
+
+/// The density of a normal distribution times a number, but for a ten-thousandth at each end.
+fn density(normal: Normal, times: f64) -> Series {
+    let ends = [1e-4, 1.0 - 1e-4].map(|part| normal.inverse_cdf(part));
+    let points = (0..=POINTS).map(|point| {
+        let part = point as f64 / POINTS as f64;
+        let value = ends[0] + part * (ends[1] - ends[0]);
+        [value, times * normal.pdf(value)]
+    });
+    Series::new("linear propagation", points.collect::<Vec<_>>())
 }
 
 /// The place of the event of every variant that has it.
@@ -83,8 +108,16 @@ fn places(source: &Source<'_>, picture: &Picture, kind: &str) -> io::Result<Vec<
     Ok(places)
 }
 
-/// The outline of the bars, and the highest of them.
-fn outline(places: &[f64], low: f64, high: f64) -> (Vec<[f64; 2]>, f64) {
+/// How many values are where.
+struct Bars {
+    outline: Vec<[f64; 2]>,
+    /// The highest.
+    most: f64,
+    /// Width of each.
+    bin: f64,
+}
+
+fn bars(places: &[f64], low: f64, high: f64) -> Bars {
     let count = places.len() as f64;
     let width = 2.0 * (quantile(places, 0.75) - quantile(places, 0.25)) / count.cbrt();
     let range = if high > low {
@@ -105,7 +138,11 @@ fn outline(places: &[f64], low: f64, high: f64) -> (Vec<[f64; 2]>, f64) {
         points.extend([[at(bin), count], [at(bin + 1), count]]);
     }
     points.push([at(counts.len()), 0.0]);
-    (points, counts.into_iter().fold(0.0, f64::max))
+    Bars {
+        outline: points,
+        most: counts.into_iter().fold(0.0, f64::max),
+        bin: range / bins,
+    }
 }
 
 #[cfg(test)]
@@ -115,13 +152,13 @@ mod tests {
     #[test]
     fn bars_hold_every_value_once() {
         let places: Vec<f64> = (0..1000).map(|index| f64::from(index) / 999.0).collect();
-        let (points, most) = outline(&places, 0.0, 1.0);
+        let Bars { outline, most, bin } = bars(&places, 0.0, 1.0);
         // Twice half of the range over ten: ten bins.
-        assert_eq!(points.len(), 22);
-        let sum: f64 = points[1..21].iter().step_by(2).map(|point| point[1]).sum();
+        assert_eq!((outline.len(), bin), (22, 0.1));
+        let sum: f64 = outline[1..21].iter().step_by(2).map(|point| point[1]).sum();
         assert_eq!((sum, most), (1000.0, 100.0));
         // All in one place.
-        let (points, most) = outline(&[2.0, 2.0], 2.0, 2.0);
-        assert_eq!((points[1], most), ([2.0, 2.0], 2.0));
+        let Bars { outline, most, .. } = bars(&[2.0, 2.0], 2.0, 2.0);
+        assert_eq!((outline[1], most), ([2.0, 2.0], 2.0));
     }
 }

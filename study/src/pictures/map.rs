@@ -3,7 +3,7 @@
 use std::io;
 
 use hertzian::System;
-use hertzian::bifurcation::{Map, Reason};
+use hertzian::bifurcation::{Cell, Map, Reason};
 use hertzian::chart::Chart;
 use serde_json::{Value as Json, json};
 
@@ -12,16 +12,6 @@ use crate::merge::Source;
 use crate::plan::Picture;
 use crate::study::Prepared;
 use crate::table::Value;
-
-/// Counts of a cell, as columns and as fields.
-const COUNTED: [&str; 6] = [
-    "stable",
-    "unstable",
-    "undecided",
-    "missed",
-    "motions",
-    "restless",
-];
 
 /// Where the columns are that cells are read from.
 struct Columns {
@@ -38,7 +28,7 @@ impl Columns {
     fn of(study: &Prepared) -> Self {
         let place = |name: &str| place(study, name);
         Self {
-            counted: COUNTED.map(place),
+            counted: Cell::COUNTED.map(place),
             row: place("row"),
             value: place("value"),
             largest: place("largest"),
@@ -57,7 +47,7 @@ impl Columns {
             }));
         }
         let mut cell = without(&Json::Null);
-        for (name, place) in COUNTED.into_iter().zip(self.counted) {
+        for (name, place) in Cell::COUNTED.into_iter().zip(self.counted) {
             cell[name] = json!(number(row, place).unwrap_or_default() as u64);
         }
         cell["largest"] = json!(number(row, self.largest));

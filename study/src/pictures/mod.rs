@@ -2,6 +2,7 @@
 
 mod fan;
 mod histogram;
+mod linear;
 mod map;
 mod tracks;
 
@@ -93,6 +94,14 @@ pub(crate) fn check(study: &Prepared) -> Result<(), StudyError> {
             }
             Shown::Histogram if what == What::Solutions => {
                 return refused("a histogram needs events, which solutions have not");
+            }
+            Shown::Histogram if picture.linear && study.designed.moments().is_none() => {
+                return refused(
+                    "`linear` needs distributions: design = \"sobol\", \"latin-hypercube\" or \"random\"",
+                );
+            }
+            Shown::Map | Shown::Fan if picture.linear => {
+                return refused("`linear` belongs to what = \"histogram\"");
             }
             Shown::Fan if what == What::Solutions || study.at.len() < 2 => {
                 return refused("a fan needs orbits at values: give `keep.at` at least two");

@@ -4,4 +4,5 @@ mod common;
 mod forms;
 mod kept;
 mod rows;
+mod uncertainty;
 mod variants;

@@ -13,12 +13,12 @@ hertzian::oscillator! {
     }
 }
 
-fn place(study: &Prepared, name: &str) -> usize {
+pub fn place(study: &Prepared, name: &str) -> usize {
     let mut names = study.columns().iter().map(|column| column.name.as_str());
     names.position(|known| known == name).expect(name)
 }
 
-fn number(study: &Prepared, row: &[Value], name: &str) -> f64 {
+pub fn number(study: &Prepared, row: &[Value], name: &str) -> f64 {
     match row[place(study, name)] {
         Value::Number(value) => value,
         Value::Whole(value) => value as f64,
@@ -26,7 +26,7 @@ fn number(study: &Prepared, row: &[Value], name: &str) -> f64 {
     }
 }
 
-fn text<'r>(study: &Prepared, row: &'r [Value], name: &str) -> &'r str {
+pub fn text<'r>(study: &Prepared, row: &'r [Value], name: &str) -> &'r str {
     match &row[place(study, name)] {
         Value::Text(text) => text,
         other => panic!("{name}: {other:?}"),
@@ -82,6 +82,109 @@ fn folds_have_their_places_and_errors_by_every_method() {
                 .all(|row| text(&study, row, "ended") == "reached the end of the range")
         );
     }
+}
+
+/// Against the folds of neighbouring variants, which the contact equation has to 1e-12.
+#[test]
+fn places_of_folds_move_as_their_neighbours_say() {
+    let (middle, step) = ([0.032, 0.1], 2e-6);
+    let table: String = [[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]]
+        .map(|[zeta, drive]| format!("{},{}\n", middle[0] + step * zeta, middle[1] + step * drive))
+        .concat();
+    let study = Study::of(&OneSided::default()).table(format!("zeta,drive\n{table}"));
+    let request = Request::response(0.6, 1.6).by(Method::ContactEquation);
+    let keep = Keep::new().events(["fold"]).sensitivities(true);
+    let study = study
+        .request(request)
+        .keep(keep)
+        .prepare()
+        .expect("a study");
+    let folds: Vec<Vec<f64>> = (0..5)
+        .map(|index| {
+            let rows = study.rows(index);
+            rows.iter()
+                .map(|row| number(&study, row, "value"))
+                .collect()
+        })
+        .collect();
+    let rows = study.rows(0);
+    assert_eq!(rows.len(), 2);
+    for (fold, row) in rows.iter().enumerate() {
+        for (name, [below, above]) in [("zeta", [1, 2]), ("drive", [3, 4])] {
+            let expected = (folds[above][fold] - folds[below][fold]) / (2.0 * step);
+            let found = number(&study, row, &format!("by_{name}"));
+            // Third derivatives move the difference by the square of the step.
+            assert!(
+                (found / expected - 1.0).abs() < 1e-5,
+                "{name}: {found} {expected}"
+            );
+            assert!(number(&study, row, &format!("error_by_{name}")) < 1e-6 * found.abs());
+        }
+        assert_eq!(row[place(&study, "without")], Value::Missing);
+    }
+}
+
+/// Where a period doubles the place takes second derivatives, which there are not.
+#[test]
+fn events_without_sensitivities_say_why() {
+    let variants = Variants::grid().over("zeta", Spread::list(&[0.032]));
+    let request = Request::response(2.0, 0.5)
+        .vary("drive", 1.0)
+        .by(Method::Shooting);
+    let study = Study::of(&OneSided::default()).variants(variants);
+    let keep = Keep::new().events(["period-doubling"]).sensitivities(true);
+    let study = study
+        .request(request)
+        .keep(keep)
+        .prepare()
+        .expect("a study");
+    let rows = study.rows(0);
+    assert!(!rows.is_empty());
+    for row in &rows {
+        let why = text(&study, row, "without");
+        assert!(why.contains("second derivatives"), "{why}");
+        for name in ["by_zeta", "error_by_omega"] {
+            assert_eq!(row[place(&study, name)], Value::Missing);
+        }
+    }
+    let refused = Study::of(&OneSided::default())
+        .variants(Variants::grid().over("drive", Spread::list(&[0.1])))
+        .request(Request::solutions(0.65, 1.05, &[0.8]))
+        .keep(Keep::new().sensitivities(true));
+    let error = refused.prepare().expect_err("no events").to_string();
+    assert!(error.contains("keep.sensitivities"), "{error}");
+}
+
+hertzian::oscillator! {
+    /// Names that columns have.
+    Named(x) {
+        param value = 4 > 0;
+        param by_value = 1;
+        ddot(x) + 0.2*dot(x) + value*x = by_value*cos(omega*t);
+    }
+}
+
+/// Two columns of one name cannot be read by numpy, and pictures would show the wrong one.
+#[test]
+fn parameters_with_names_of_columns_have_their_own() {
+    let variants = Variants::sobol(1)
+        .over("value", Spread::uniform(3.0, 5.0))
+        .over("by_value", Spread::uniform(1.0, 2.0));
+    let study = Study::of(&Named::default()).variants(variants);
+    let study = study
+        .request(Request::response(0.5, 3.0).stability(false))
+        .keep(Keep::new().sensitivities(true).at(&[1.0]))
+        .prepare()
+        .expect("a study");
+    let names: Vec<&str> = study.columns().iter().map(|column| &*column.name).collect();
+    assert_eq!(names[..4], ["variant", "value_", "by_value_", "row"]);
+    for (place, name) in names.iter().enumerate() {
+        assert!(!names[..place].contains(name), "{names:?}");
+    }
+    let row = &study.rows(0)[0];
+    assert_eq!(row.len(), names.len());
+    assert_eq!(number(&study, row, "value"), 1.0);
+    assert_eq!(number(&study, row, "value_"), study.values(0)[0]);
 }
 
 /// Where the drive is so large that nothing is found, or a value is refused, the others have their rows all the same.

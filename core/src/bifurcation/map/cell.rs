@@ -92,6 +92,28 @@ impl fmt::Display for CellVerdict {
 }
 
 impl Cell {
+    /// Names of [`counts`](Self::counts), as columns of tables have them.
+    pub const COUNTED: [&'static str; 6] = [
+        "stable",
+        "unstable",
+        "undecided",
+        "missed",
+        "motions",
+        "restless",
+    ];
+
+    /// The orbits and motions that are counted, in the order of [`COUNTED`](Self::COUNTED).
+    pub fn counts(&self) -> [usize; 6] {
+        [
+            self.stable,
+            self.unstable,
+            self.undecided,
+            self.missed,
+            self.motions,
+            self.restless,
+        ]
+    }
+
     /// One of which nothing is known.
     pub(super) fn without(reason: Reason) -> Self {
         Self {

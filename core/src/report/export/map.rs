@@ -16,38 +16,27 @@ use crate::report::export::json::{JSON_VERSION, read, write};
 use crate::report::export::table::{maybe, number};
 use crate::report::unit::in_unit;
 
-/// Names of the columns after those of the two parameters; the sixth has the unit of the signal.
-const COLUMNS: [&str; 10] = [
-    "stable",
-    "unstable",
-    "undecided",
-    "missed",
-    "motions",
-    "restless",
-    "largest",
-    "periods",
-    "verdict",
-    "reason",
-];
-/// The place of `largest` among them.
-const LARGEST: usize = 6;
+/// Names of the columns after those of the two parameters and the counts; the first has the unit of the signal.
+const COLUMNS: [&str; 4] = ["largest", "periods", "verdict", "reason"];
 
 impl Map {
     /// A table with names of the columns, one row for each cell: the two parameters by their names; `stable`, `unstable`, `undecided`,
     /// `missed`, `motions`, `restless` and `largest` as of [`Cell`]; `periods` of the stable orbits, with spaces; `verdict`, what can be said
     /// of all solutions together; `reason`, why nothing is known. What is not known is empty.
     pub fn to_csv(&self) -> String {
+        let own: Vec<&str> = Cell::COUNTED.into_iter().chain(COLUMNS).collect();
         let mut names: Vec<String> = Vec::new();
         for name in &self.names {
             let mut column = name.clone();
-            while COLUMNS.contains(&column.as_str()) {
+            while own.contains(&column.as_str()) {
                 column.push('_');
             }
             names.push(in_unit(&column, unit(&self.model, name)));
         }
-        names.extend(COLUMNS.map(str::to_owned));
-        let largest = &mut names[self.names.len() + LARGEST];
-        *largest = in_unit(largest, self.model.unit_of(&self.signal));
+        names.extend(Cell::COUNTED.map(str::to_owned));
+        let [largest, rest @ ..] = COLUMNS;
+        names.push(in_unit(largest, self.model.unit_of(&self.signal)));
+        names.extend(rest.map(str::to_owned));
         let rows = self.cells.iter().enumerate().map(|(place, cell)| {
             let values = self.at(place).unwrap_or([f64::NAN; 2]).map(number);
             let row = values.into_iter().chain(cells(cell));
@@ -75,21 +64,13 @@ pub(crate) fn unit<'m>(model: &'m Model, name: &str) -> &'m str {
     parameter.map_or("", |parameter| &parameter.unit)
 }
 
-/// A cell as the texts of [`COLUMNS`].
+/// A cell as the texts of its counts and of [`COLUMNS`].
 fn cells(cell: &Cell) -> Vec<String> {
     if let Some(reason) = &cell.reason {
-        let mut cells = vec![String::new(); COLUMNS.len() - 2];
+        let mut cells = vec![String::new(); Cell::COUNTED.len() + COLUMNS.len() - 2];
         cells.extend([cell.verdict().to_string(), reason.to_string()]);
         return cells;
     }
-    let counts = [
-        cell.stable,
-        cell.unstable,
-        cell.undecided,
-        cell.missed,
-        cell.motions,
-        cell.restless,
-    ];
     let periods: Vec<String> = cell.periods.iter().map(ToString::to_string).collect();
     let rest = [
         maybe(cell.largest),
@@ -97,7 +78,7 @@ fn cells(cell: &Cell) -> Vec<String> {
         cell.verdict().to_string(),
         String::new(),
     ];
-    let counts = counts.iter().map(ToString::to_string);
+    let counts = cell.counts().into_iter().map(|count| count.to_string());
     counts.chain(rest).collect()
 }
 
