@@ -9,17 +9,11 @@ pub(super) fn below(
     base: f64,
     frame: &Rectangle,
 ) -> Vec<Vec<Pixel>> {
-    let inside = |[x, y]: Pixel| {
-        [
-            x.clamp(frame.left, frame.right()),
-            y.clamp(frame.top, frame.bottom()),
-        ]
-    };
     let base = base.clamp(frame.top, frame.bottom());
     let mut polygons = Vec::new();
     let mut part: Vec<Pixel> = Vec::new();
     for point in points.chain([None]) {
-        let point = point.map(inside);
+        let point = point.map(|point| frame.nearest(point));
         let turns = match (point, &part[..]) {
             (Some(here), [.., before, last]) => (here[0] - last[0]) * (last[0] - before[0]) < 0.0,
             (None, _) => true,

@@ -2,6 +2,8 @@
 
 use super::along;
 use super::area;
+use super::band;
+use super::bars;
 use super::cloud::{self, Dots};
 use super::drawing::Plot;
 use super::legend::{Entry, Sample};
@@ -9,7 +11,7 @@ use super::mark::{self, Kind, Merged};
 use super::note::{self, Named, Placed};
 use super::polyline::polylines;
 use super::shape::{Shape, draw_shape};
-use super::svg::{INK, Pen, Pixel, Rectangle, Svg, pen};
+use super::svg::{BAND, INK, Pen, Pixel, Rectangle, Svg, pen};
 use super::{Chart, Line, Note, Series};
 
 /// Dark blue, vermilion, sky blue, black, green, orange, purple: the first four differ in lightness too.
@@ -24,6 +26,8 @@ const REFERENCE: Pen = pen("#666666", 1.4, "12 4 2 4");
 pub(super) struct Contents {
     references: Vec<Vec<Vec<Pixel>>>,
     areas: Vec<(&'static str, Vec<Vec<Pixel>>)>,
+    bands: Vec<Vec<Vec<Pixel>>>,
+    bars: Vec<bars::Drawn>,
     runs: Vec<(Pen, Vec<Vec<Pixel>>)>,
     /// Small shapes along curves, with their colour.
     along: Vec<(&'static str, Shape, Vec<Pixel>)>,
@@ -55,6 +59,8 @@ impl Contents {
         let mut contents = Self {
             references: references.map(|line| lines(&line.points)).collect(),
             areas: areas(chart, plot, &styles),
+            bands: bands(chart, plot),
+            bars: bars::drawn(chart, plot),
             runs: runs.collect(),
             along: Vec::new(),
             markers,
@@ -111,12 +117,19 @@ impl Contents {
             .chain(self.clouds.iter().flat_map(Dots::lines))
             .chain(covered)
             .chain(self.notes.iter().flat_map(Placed::lines))
+            .chain(self.bars.iter().flat_map(bars::Drawn::lines))
             .collect()
     }
 
     pub(super) fn draw(&self, svg: &mut Svg) {
         for (colour, polygons) in &self.areas {
             svg.pale_area(polygons, colour);
+        }
+        for polygons in &self.bands {
+            svg.band(polygons);
+        }
+        for bar in &self.bars {
+            bar.draw(svg);
         }
         for lines in &self.references {
             svg.lines(lines, REFERENCE);
@@ -213,6 +226,19 @@ fn areas(chart: &Chart, plot: &Plot, styles: &Styles) -> Vec<(&'static str, Vec<
     chart.areas.iter().map(area).collect()
 }
 
+/// Grey bands, within the frame.
+fn bands(chart: &Chart, plot: &Plot) -> Vec<Vec<Vec<Pixel>>> {
+    let bands = chart.bands.iter().map(|band| {
+        let line = |points: &Vec<[f64; 2]>| {
+            let points = points.iter();
+            let pixels = points.map(|&point| Some(plot.frame.nearest(plot.pixel(point)?)));
+            pixels.collect::<Vec<Option<Pixel>>>()
+        };
+        band::between([line(&band.lines[0]), line(&band.lines[1])])
+    });
+    bands.collect()
+}
+
 /// Whether curves have different styles.
 fn are_told_apart(styles: &[usize]) -> bool {
     styles.iter().any(|style| *style != styles[0])
@@ -279,6 +305,10 @@ pub(super) fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
     let markers = markers.flat_map(|markers| &markers.series.points);
     let areas = chart.areas.iter().flat_map(|area| &area.points);
     let traces = chart.traces.iter().flat_map(|trace| &trace.points);
+    let bands = chart
+        .bands
+        .iter()
+        .flat_map(|band| band.lines.iter().flatten());
     let clouds = chart.clouds.iter().flat_map(|cloud| &cloud.points);
     let notes = chart.notes.iter().chain(&chart.texts);
     let notes = notes.map(|note| &note.point);
@@ -287,6 +317,7 @@ pub(super) fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
     let references = chart.references.iter().filter(move |_| alone);
     curves
         .chain(areas)
+        .chain(bands)
         .chain(markers)
         .chain(traces)
         .chain(clouds)
@@ -294,6 +325,7 @@ pub(super) fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
         .chain(references.flat_map(|line| &line.points))
         .filter(|point| point.iter().all(|value| value.is_finite()))
         .copied()
+        .chain(bars::shown(&chart.bars))
 }
 
 /// The rows of the legend: the curves if there are several, the kinds of line, references, markers; only what is seen, and
@@ -349,7 +381,7 @@ pub(super) fn entries(chart: &Chart, contents: &Contents) -> Vec<Entry> {
             add(Sample::Dots(pen), &cloud.label);
         }
     }
-    for (colour, label) in chart.raster.iter().flat_map(super::raster::Raster::shown) {
+    for (colour, label) in filled(chart) {
         add(Sample::Area(colour), label);
     }
     for (markers, (shape, pixels)) in chart.markers.iter().zip(&contents.markers) {
@@ -359,4 +391,18 @@ pub(super) fn entries(chart: &Chart, contents: &Contents) -> Vec<Entry> {
         }
     }
     entries
+}
+
+/// Names of what is filled, with the colours.
+fn filled(chart: &Chart) -> impl Iterator<Item = (&'static str, &str)> {
+    let bands = chart.bands.iter().map(|band| (BAND, band.label.as_str()));
+    let bars = [bars::LARGER, bars::SMALLER]
+        .into_iter()
+        .zip(&chart.of_bars);
+    let bars = bars.map(|(colour, label)| (colour, label.as_str()));
+    let cells = chart.raster.iter().flat_map(super::raster::Raster::shown);
+    bands
+        .chain(bars)
+        .filter(|(_, label)| !label.is_empty())
+        .chain(cells)
 }

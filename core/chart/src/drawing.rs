@@ -1,6 +1,7 @@
 //! Puts a chart on the page.
 
 use super::axis::{Powers, Range, Scale, Ticks, superscript};
+use super::bars;
 use super::contents::{Contents, entries, shown};
 use super::legend::Legend;
 use super::prefix::{prefixed, takes_prefix};
@@ -123,6 +124,18 @@ fn in_brackets(label: &str) -> (&str, &str) {
     unit.unwrap_or((label, ""))
 }
 
+impl Ruler {
+    /// Names beside rows, at positions from below.
+    fn of_rows(label: &str, labelled: Vec<(f64, String)>) -> Self {
+        Self {
+            label: label.to_owned(),
+            range: Range::between(Scale::Linear, [0.0, 1.0]),
+            labelled,
+            minor: Vec::new(),
+        }
+    }
+}
+
 impl Plot {
     /// The axes of a chart, with some room left free on the right.
     fn of(chart: &Chart, free: f64) -> Self {
@@ -143,7 +156,11 @@ impl Plot {
                 Range::of(chart.y.scale, values(1), true),
             ),
         };
-        let y = Ruler::of(&chart.y, y, 0.6 * HEIGHT, |_| TICK);
+        let y = if chart.bars.is_empty() {
+            Ruler::of(&chart.y, y, 0.6 * HEIGHT, |_| TICK)
+        } else {
+            Ruler::of_rows(&chart.y.label, bars::rows(&chart.bars))
+        };
         let x = Ruler::of(&chart.x, x, 0.8 * WIDTH - free, |label| {
             width_of(label, TICK)
         });
@@ -172,6 +189,11 @@ impl Plot {
 
     pub(super) fn pixel(&self, [x, y]: [f64; 2]) -> Option<Pixel> {
         Some(self.at([self.x.range.position(x)?, self.y.range.position(y)?]))
+    }
+
+    /// Where a value is along the horizontal axis.
+    pub(super) fn across(&self, value: f64) -> Option<f64> {
+        self.x.range.position(value)
     }
 
     /// The pixel of positions along the axes.

@@ -25,6 +25,8 @@
 mod along;
 mod area;
 mod axis;
+mod band;
+mod bars;
 mod cloud;
 mod contents;
 mod drawing;
@@ -46,6 +48,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use axis::Scale;
+pub use bars::Bar;
 pub use page::Page;
 pub use prefix::{prefixed, takes_prefix};
 pub use raster::{Colour, Raster, STEPS};
@@ -63,6 +66,9 @@ pub struct Chart {
     curves: Vec<Curve>,
     references: Vec<Series>,
     areas: Vec<Series>,
+    bands: Vec<Band>,
+    bars: Vec<Bar>,
+    of_bars: [String; 2],
     markers: Vec<Markers>,
     traces: Vec<Series>,
     clouds: Vec<Series>,
@@ -119,6 +125,13 @@ impl Series {
         let (label, points) = (label.into(), points.into());
         Self { label, points }
     }
+}
+
+/// The area between two lines of as many points.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Band {
+    label: String,
+    lines: [Vec<[f64; 2]>; 2],
 }
 
 /// A point with its name written beside it, where it covers nothing.
@@ -253,6 +266,23 @@ impl Chart {
     #[must_use]
     pub fn area(mut self, area: Series) -> Self {
         self.areas.push(area);
+        self
+    }
+
+    /// Fills the band between two lines of as many points, in grey behind the curves. A point that is not finite interrupts it.
+    #[must_use]
+    pub fn band(mut self, label: impl Into<String>, lines: [Vec<[f64; 2]>; 2]) -> Self {
+        let label = label.into();
+        self.bands.push(Band { label, lines });
+        self
+    }
+
+    /// Shows bars, a row for each, the first on top, with their labels in place of a vertical axis. The legend has names for the dark and for the
+    /// pale parts.
+    #[must_use]
+    pub fn bars(mut self, bars: impl Into<Vec<Bar>>, [dark, pale]: [&str; 2]) -> Self {
+        self.bars = bars.into();
+        self.of_bars = [dark, pale].map(str::to_owned);
         self
     }
 

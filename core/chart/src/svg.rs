@@ -10,6 +10,9 @@ pub(super) type Pixel = [f64; 2];
 /// Colours of axes and text.
 pub(super) const INK: &str = "#222222";
 
+/// Colour of bands around curves.
+pub(super) const BAND: &str = "#bdbdbd";
+
 /// A document that grows.
 pub(super) struct Svg {
     text: String,
@@ -71,6 +74,14 @@ impl Rectangle {
             vec![[self.left, y], [self.right(), y]]
         };
         (0..=20).map(line).collect()
+    }
+
+    /// The nearest point of it.
+    pub(super) fn nearest(&self, [x, y]: Pixel) -> Pixel {
+        [
+            x.clamp(self.left, self.right()),
+            y.clamp(self.top, self.bottom()),
+        ]
     }
 
     /// Larger by a margin on every side.
@@ -149,6 +160,15 @@ impl Svg {
 
     /// Polygons that all go round in one sense, as one pale area.
     pub(super) fn pale_area(&mut self, polygons: &[Vec<Pixel>], colour: &str) {
+        self.area(polygons, colour, 0.13);
+    }
+
+    /// The same as a band, through which lines of the grid are seen.
+    pub(super) fn band(&mut self, polygons: &[Vec<Pixel>]) {
+        self.area(polygons, BAND, 0.7);
+    }
+
+    fn area(&mut self, polygons: &[Vec<Pixel>], colour: &str, opacity: f64) {
         if polygons.is_empty() {
             return;
         }
@@ -158,7 +178,7 @@ impl Svg {
             let _ = write!(path, "{}Z", Path(std::slice::from_ref(polygon)));
         }
         self.push(format_args!(
-            "<path d=\"{path}\" fill=\"{colour}\" fill-opacity=\"0.13\" fill-rule=\"nonzero\"/>"
+            "<path d=\"{path}\" fill=\"{colour}\" fill-opacity=\"{opacity}\" fill-rule=\"nonzero\"/>"
         ));
     }
 
