@@ -216,7 +216,7 @@ impl Curve {
         let key = (branch, event);
         let branch = &self.branches[branch];
         let found = branch
-            .event_sensitivities(&branch.events[event])
+            .event_sensitivities_of(&branch.events[event], &[])
             .map_err(|error| error.to_string())?;
         let mut slopes = vec![0.0; problem.unknowns.len()];
         for (index, unknown) in problem.of_group(self.group) {

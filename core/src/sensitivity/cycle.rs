@@ -284,6 +284,33 @@ impl Cycle {
         self.flow.advance(from, end, state, Some(tangent), None)
     }
 
+    /// The matrix over the period, in units of states.
+    pub(super) fn monodromy(&self, evaluated: &Evaluated) -> DMatrix<f64> {
+        let order = self.order();
+        let mut product = DMatrix::identity(order, order);
+        for segment in 0..self.segments {
+            let first = segment * order;
+            let own = evaluated.jacobian.view((first, first), (order, order));
+            let mut own = own.into_owned();
+            if self.segments == 1 {
+                // Its own beginning is the next one.
+                own += DMatrix::identity(order, order);
+            }
+            product = own * product;
+        }
+        for i in 0..order {
+            for j in 0..order {
+                product[(i, j)] *= self.unit(j) / self.unit(i);
+            }
+        }
+        product
+    }
+
+    /// How often levels were crossed since the flow was made.
+    pub(super) fn switches(&self) -> usize {
+        self.flow.work().switches
+    }
+
     /// What counts as one in an unknown: velocities count by the frequency.
     pub(super) fn unit(&self, unknown: usize) -> f64 {
         if unknown % self.order() < self.coordinates {
@@ -304,15 +331,27 @@ impl Cycle {
     /// # Errors
     /// If the motion cannot be continued, or Newton's method does not converge.
     pub(super) fn solve(&mut self, states: &mut [f64]) -> Result<(), SensitivityError> {
+        self.solve_by(states, |jacobian, right| {
+            let solved = jacobian.clone().lu().solve(right);
+            solved.ok_or(SensitivityError::Singular)
+        })
+    }
+
+    /// The same, with updates by a solver of linear equations that is given.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve), and those of the solver.
+    pub(super) fn solve_by(
+        &mut self,
+        states: &mut [f64],
+        solver: impl Fn(&DMatrix<f64>, &DVector<f64>) -> Result<DVector<f64>, SensitivityError>,
+    ) -> Result<(), SensitivityError> {
         let mut before = f64::INFINITY;
         for _ in 0..ITERATIONS {
             let Evaluated {
                 residual, jacobian, ..
             } = self.evaluate(states, &[], &[])?;
-            let update = jacobian
-                .lu()
-                .solve(&-residual)
-                .ok_or(SensitivityError::Singular)?;
+            let update = solver(&jacobian, &-residual)?;
             let length = self.size(update.as_slice()) / self.size(states).max(f64::MIN_POSITIVE);
             states.iter_mut().zip(&update).for_each(|(x, d)| *x += d);
             if self.has_converged(length, before) {

@@ -8,9 +8,9 @@ use crate::time::FlowError;
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SensitivityError {
-    /// The derivative of the place of such an event takes second derivatives of the motion.
+    /// Such an event does not move with parameters.
     #[error(
-        "the place of a {kind} has no derivative here: it takes second derivatives of the motion, which are not computed; folds and grazing have one"
+        "the place of a {kind} has no derivative: where branches cross that no symmetry distinguishes, a change of a parameter parts them"
     )]
     Kind {
         /// The kind of the event.
@@ -31,19 +31,48 @@ pub enum SensitivityError {
         /// How far the search went along the branch.
         moved: f64,
     },
+    /// No multiplier crosses the unit circle near the event that was given.
+    #[error("no multiplier crosses the unit circle nearby as it does at such an event")]
+    NoCrossing,
+    /// The multiplier that decides is a repeated one.
+    #[error(
+        "the multiplier that crosses the unit circle is a repeated one, which has no derivatives"
+    )]
+    Repeated,
+    /// Orbits beside this one cross other levels.
+    #[error(
+        "multipliers have no derivatives here: motions beside the orbit, however near, cross other levels, as where a gap touches one"
+    )]
+    Beside,
+    /// A force jumps at the level that is touched.
+    #[error(
+        "the place has no derivative: at the level that is touched the force jumps, and with it the motion of what is beside"
+    )]
+    Jumps,
     /// No gap comes near a level.
     #[error("no gap of the orbit has an extreme on a level")]
     NoTouch,
+    /// What should be an uncertainty is none.
+    #[error("{text} is no uncertainty: write zeta=0.002, or load=5% of its value")]
+    Uncertainty {
+        /// What was given.
+        text: String,
+    },
     /// The motion cannot be continued.
     #[error(transparent)]
     Motion(#[from] FlowError),
 }
 
 impl SensitivityError {
+    /// Whether it was cancelled.
+    pub(super) fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Motion(FlowError::Cancelled { .. }))
+    }
+
     fn kind(&self) -> ErrorKind {
         match self {
-            Self::Kind { .. } => ErrorKind::Request,
-            Self::Motion(FlowError::Cancelled { .. }) => ErrorKind::Cancelled,
+            Self::Kind { .. } | Self::Uncertainty { .. } => ErrorKind::Request,
+            _ if self.is_cancelled() => ErrorKind::Cancelled,
             Self::Motion(_) => ErrorKind::Motion,
             _ => ErrorKind::NoOrbit,
         }
@@ -56,7 +85,12 @@ crate::error::room_error! {
     Singular {}
     Diverged { left }
     NoFold { moved }
+    NoCrossing {}
+    Repeated {}
+    Beside {}
+    Jumps {}
     NoTouch {}
+    Uncertainty { text }
     ;
     Motion
 }

@@ -24,7 +24,7 @@ use crate::system::Variable;
 use crate::time::FlowError;
 
 /// Angle of the highest harmonic over a part of an arc that one rule is for.
-const ANGLE: f64 = 2.0;
+const ANGLE: f64 = 4.0;
 
 /// How states and variables move together.
 #[derive(Debug, Clone)]

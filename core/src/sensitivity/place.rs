@@ -18,6 +18,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::cycle::{AtStop, Cycle, Evaluated, Stop};
 use super::error::SensitivityError;
+use super::orbit::Start;
 use super::scan::{Scan, Turn};
 use super::slopes::{Direction, Slopes};
 use crate::system::{System, Variable};
@@ -40,7 +41,21 @@ const TOUCH: f64 = 1e-2;
 #[derive(Debug, Clone)]
 pub(super) struct Moving {
     pub(super) states: Vec<f64>,
+    /// Of what is varied.
+    pub(super) value: f64,
     pub(super) by: Vec<f64>,
+    /// Of these derivatives; nothing where they are told by another flow.
+    pub(super) errors: Vec<f64>,
+}
+
+impl Moving {
+    /// The orbit there.
+    pub(super) fn start(&self) -> Start {
+        Start {
+            states: self.states.clone(),
+            value: self.value,
+        }
+    }
 }
 
 /// A row of extended unknowns as that of the states and the value.
@@ -137,7 +152,12 @@ pub(super) fn fold(
     let (states, value) = split(&u);
     cycle.set(cycle.varied, value)?;
     let by = moves_of_fold(cycle, &states, variables)?;
-    Ok(Moving { states, by })
+    Ok(Moving {
+        states,
+        value,
+        by,
+        errors: Vec::new(),
+    })
 }
 
 /// (4) of [`cycle`](super::cycle)
@@ -157,7 +177,9 @@ fn moves_of_fold(
 
 /// The left and the right null vector of a matrix that is singular, or nearly so, of length one: by a border that makes it regular, first any
 /// and then the vectors that it gives.
-fn null_vectors(matrix: &DMatrix<f64>) -> Result<(DVector<f64>, DVector<f64>), SensitivityError> {
+pub(super) fn null_vectors(
+    matrix: &DMatrix<f64>,
+) -> Result<(DVector<f64>, DVector<f64>), SensitivityError> {
     let n = matrix.nrows();
     let any = DVector::from_fn(n, |i, _| 1.0 + 0.3 * (i as f64).sin()).normalize();
     let (mut left, mut right) = (any.clone(), any);
@@ -204,6 +226,9 @@ pub(super) fn grazing(
         let near = nearest(&slopes, &scan, touch)
             .filter(|(_, distance)| distance.abs() <= TOUCH * cycle.size(&states));
         let ((contact, level, turn), distance) = near.ok_or(SensitivityError::NoTouch)?;
+        if slopes.jumps(contact, level) {
+            return Err(SensitivityError::Jumps);
+        }
         let arc = &scan.arcs[turn.arc];
         let stop = Stop {
             segment: arc.segment,
@@ -231,7 +256,12 @@ pub(super) fn grazing(
                 slopes.distance_along(&at, contact, level, along)[0]
             })?;
             let by = grows[1..].iter().map(|by| -by / grows[0]).collect();
-            return Ok(Moving { states, by });
+            return Ok(Moving {
+                states,
+                value,
+                by,
+                errors: Vec::new(),
+            });
         }
         value += step.clamp(-0.01 * value.abs(), 0.01 * value.abs());
     }

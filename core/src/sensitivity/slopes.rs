@@ -176,6 +176,11 @@ impl Slopes {
         }
     }
 
+    /// Which of the signals one is.
+    pub(super) fn position(&self, asked: Asked) -> Option<usize> {
+        self.asked.iter().position(|own| *own == asked)
+    }
+
     /// Number of signals.
     pub(super) fn count(&self) -> usize {
         self.sums.len()
@@ -512,6 +517,12 @@ impl Slopes {
     /// A level of the law of a contact.
     pub(super) fn level(&self, contact: usize, level: usize) -> f64 {
         self.contacts[contact].levels[level]
+    }
+
+    /// Whether the force of a contact jumps at a level, even without a rate.
+    pub(super) fn jumps(&self, contact: usize, level: usize) -> bool {
+        let law = self.system.law(self.layout.contacts[contact].law);
+        law.facts().levels[level].force_jumps
     }
 
     /// Number of levels of the law of a contact.

@@ -3,10 +3,10 @@
 use hertzian::{Event, FrequencyResponse, System};
 use hertzian_tests::{Continuous, OneSided, OneSidedLinear, TwoMasses};
 
-use super::{Make, assert_near, names, richardson, shot};
+use super::{Make, assert_near, names, richardson_of, shot, unloaded};
 
-/// The fold of a perturbed system next to one of another, on a short branch that begins beside it.
-fn place(system: &dyn System, fold: &Event, beside: f64) -> f64 {
+/// The fold of a perturbed system next to one of another, on a short branch that begins beside it, and its height.
+fn place(system: &dyn System, fold: &Event, beside: f64) -> [f64; 2] {
     let omega = fold.point.value;
     let request = shot(system, &fold.point.orbit).stability(false);
     let begin = request.orbit(beside).unwrap();
@@ -29,7 +29,7 @@ fn place(system: &dyn System, fold: &Event, beside: f64) -> f64 {
             branch.stopped
         )
     });
-    found.point.value
+    [found.point.value, found.point.peak_to_peak()]
 }
 
 /// All folds in a range against differences; the step is a part of each parameter.
@@ -38,6 +38,7 @@ fn compare(name: &str, values: &[f64], [from, to]: [f64; 2], make: &Make) {
     let request = FrequencyResponse::of(model.as_ref()).stability(false);
     let branch = request.from(from).to(to).run().unwrap();
     assert!(branch.folds().count() > 0, "{name}");
+    let height = format!("{}:p2p", branch.model.coordinates[0]);
     for fold in branch.folds() {
         let omega = fold.point.value;
         // That of two masses at 0.6534 is within 1e-8 of where they cease to touch, and differences reach across.
@@ -62,11 +63,18 @@ fn compare(name: &str, values: &[f64], [from, to]: [f64; 2], make: &Make) {
                 place(make(&values).as_ref(), fold, beside)
             };
             // Where steps reach another fold, extrapolation does not settle.
-            let steps = [step, step / 8.0].map(|step| richardson(step, of));
-            let [coarse, fine] = steps;
-            let expected = if coarse.1 < fine.1 { coarse } else { fine };
+            let steps = [step, step / 8.0].map(|step| richardson_of(step, of));
+            let better = |index: usize| {
+                let [coarse, fine] = steps.map(|both| both[index]);
+                if coarse.1 < fine.1 { coarse } else { fine }
+            };
             let what = format!("{name} at {omega:.4} by {parameter}");
-            assert_near(&what, derivative, expected, scale, 1e-12 * scale);
+            assert_near(&what, derivative, better(0), scale, 1e-12 * scale);
+            let size = fold.point.peak_to_peak();
+            let height = moves.of_moving(&height, parameter).unwrap();
+            let scale = size / values[index].abs();
+            let what = format!("{what}, height");
+            assert_near(&what, height, better(1), scale, 1e-9 * scale);
         }
     }
 }
@@ -95,6 +103,12 @@ fn one_sided(alpha: f64) -> (Vec<f64>, Box<Make>) {
         })
     };
     (vec![0.032, alpha, 1.0, 0.1], Box::new(make))
+}
+
+/// Heights of resonances move as differences say, and their places.
+#[test]
+fn of_figure_2a() {
+    compare("2a", &[0.01, 1.5, 0.1], [0.7, 1.5], &unloaded);
 }
 
 #[test]

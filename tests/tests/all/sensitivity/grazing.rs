@@ -1,6 +1,6 @@
 //! Where orbits graze, against a closed form.
 
-use hertzian::{EventKind, FrequencyResponse};
+use hertzian::{EventKind, FrequencyResponse, Shooting};
 
 hertzian::oscillator! {
     /// Meets a stop where its linear resonance is higher than the gap.
@@ -57,37 +57,19 @@ fn moves_as_the_linear_resonance_does() {
     assert!(!moves.measured.is_empty());
 }
 
+/// A preload makes the force jump at the touch.
 #[test]
-fn other_events_have_none() {
+fn where_a_force_jumps_there_is_none() {
     hertzian::oscillator! {
-        Contact(x) {
-            param load;
-            param drive;
-            law contact(gap) { gap > 0 => 0.064*dot(gap) + gap, else => 0 }
-            ddot(x) + contact(x) = drive*cos(omega*t) + load;
+        Preloaded(x) {
+            param play > 0;
+            law stop(gap) { gap > play => 1 + 10*(gap - play), else => 0 }
+            ddot(x) + 0.1*dot(x) + x + stop(x) = 0.3*cos(omega*t);
         }
     }
-    let model = Contact {
-        load: 1.0,
-        drive: 1.0,
-    };
-    let request = FrequencyResponse::of(&model)
-        .vary("drive")
-        .omega(1.0)
-        .from(1.0)
-        .to(1.4);
-    let branch = request
-        .harmonics(20)
-        .doublings(true)
-        .stability(false)
-        .run()
-        .unwrap();
-    let doubling = branch.events(EventKind::PeriodDoubling).next().unwrap();
-    let error = branch.event_sensitivities(doubling).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .contains("period-doubling has no derivative"),
-        "{error}"
-    );
+    let request = FrequencyResponse::of(&Preloaded { play: 1.0 }).by(Shooting::new());
+    let branch = request.from(0.5).to(0.9).run().unwrap();
+    let event = branch.events(EventKind::Grazing { turns: false }).next();
+    let error = branch.event_sensitivities(event.unwrap()).unwrap_err();
+    assert!(error.to_string().contains("the force jumps"), "{error}");
 }

@@ -1,6 +1,7 @@
 //! Derivatives of what is read off orbits and of where folds are, against differences of shooting's own answers with a flow of 1e-13,
 //! extrapolated (Richardson): what is differenced knows nothing of derivatives by parameters.
 
+mod events;
 mod folds;
 mod grazing;
 mod points;
@@ -9,11 +10,33 @@ use hertzian::{Branch, Derivative, FrequencyResponse, Orbit, Shooting, System};
 
 /// A function of a parameter's change, with the step of its differences.
 fn richardson(h: f64, of: impl Fn(f64) -> f64) -> (f64, f64) {
-    let central = |h: f64| (of(h) - of(-h)) / (2.0 * h);
-    let [a, b, c] = [h, 0.5 * h, 0.25 * h].map(central);
-    let [ab, bc] = [(4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0];
-    let last = (16.0 * bc - ab) / 15.0;
-    (last, (last - bc).abs())
+    richardson_of(h, |change| [of(change)])[0]
+}
+
+/// Several functions at once.
+fn richardson_of<const N: usize>(h: f64, of: impl Fn(f64) -> [f64; N]) -> [(f64, f64); N] {
+    let steps = [h, 0.5 * h, 0.25 * h].map(|h| (h, of(h), of(-h)));
+    std::array::from_fn(|index| {
+        let [a, b, c] = steps.map(|(h, ahead, behind)| (ahead[index] - behind[index]) / (2.0 * h));
+        let [ab, bc] = [(4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0];
+        let last = (16.0 * bc - ab) / 15.0;
+        (last, (last - bc).abs())
+    })
+}
+
+hertzian::oscillator! {
+    /// Contact on both sides without a load: figure 2a.
+    Unloaded(x) {
+        param zeta in 0.0..;
+        param alpha > 0;
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^alpha = drive*cos(omega*t);
+    }
+}
+
+fn unloaded(v: &[f64]) -> Box<dyn System> {
+    let [zeta, alpha, drive] = [v[0], v[1], v[2]];
+    Box::new(Unloaded { zeta, alpha, drive })
 }
 
 /// Makes a system of the values of its parameters.

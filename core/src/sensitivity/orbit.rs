@@ -1,0 +1,372 @@
+//! Derivatives of what is read off one orbit, at a fixed value of what is varied.
+//!
+//! Everything is computed by two flows and two rules of quadrature, and errors are told by what the coarser ones change. The quick way
+//! takes one flow that is coarser still, and tells none.
+
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use super::cycle::{Cycle, Evaluated};
+use super::error::SensitivityError;
+use super::moments::{Along, Places, Reader, Slope};
+use super::rows::{Row, needs};
+use super::slopes::{Asked, Slopes};
+use super::{Derivative, Measured, Missing, Sensitivities, change, multipliers};
+use crate::branches::branch::{Branch, Model};
+use crate::branches::point::Point;
+use crate::cancel::Cancel;
+use crate::error::Error;
+use crate::model::request::RequestError;
+use crate::orbit::observe::Measure;
+use crate::system::{System, Variable};
+
+/// Tolerance of the flow and nodes of a rule, and those that errors are told by.
+pub(super) const FINE: (f64, usize) = (1e-12, 24);
+pub(super) const COARSE: (f64, usize) = (1e-10, 16);
+/// Those where no errors are asked for.
+const QUICK: (f64, usize) = (1e-9, 24);
+/// Roundings of a derivative, times the condition of the equations.
+pub(super) const ROUNDINGS: f64 = 8.0;
+
+/// An orbit of a system whose derivatives are asked for.
+pub(super) struct Sensitive<'p> {
+    system: Arc<dyn System>,
+    model: Model,
+    pub(super) point: &'p Point,
+    pub(super) varied: Variable,
+    name: String,
+    pub(super) variables: Vec<Variable>,
+    cancel: Cancel,
+}
+
+/// States of an orbit, and the value of what is varied.
+#[derive(Debug, Clone)]
+pub(super) struct Start {
+    pub(super) states: Vec<f64>,
+    pub(super) value: f64,
+}
+
+/// What is read off by one flow and one rule.
+pub(super) struct Read {
+    pub(super) slopes: Vec<Slope>,
+    pub(super) condition: f64,
+}
+
+impl<'p> Sensitive<'p> {
+    pub(super) fn of(branch: &Branch, point: &'p Point) -> Result<Self, Error> {
+        let system = branch.system().ok_or(RequestError::Detached)?.shared();
+        let parameters = 0..system.facts().parameters.len();
+        let facts = &system.facts().parameters;
+        let varied = facts.iter().position(|facts| facts.name == branch.varied);
+        Ok(Self {
+            variables: std::iter::once(Variable::Omega)
+                .chain(parameters.map(Variable::Parameter))
+                .collect(),
+            model: Model::of(system.as_ref()),
+            varied: varied.map_or(Variable::Omega, Variable::Parameter),
+            name: branch.varied.clone(),
+            point,
+            system,
+            cancel: Cancel::new(),
+        })
+    }
+
+    /// By variables of these names alone.
+    ///
+    /// # Errors
+    /// If there is no such variable.
+    pub(super) fn only_by(mut self, names: &[&str]) -> Result<Self, Error> {
+        let variables = names.iter().map(|name| self.variable(name));
+        self.variables = variables.collect::<Result<_, Error>>()?;
+        Ok(self)
+    }
+
+    /// What has a name: the frequency, or a parameter.
+    fn variable(&self, name: &str) -> Result<Variable, Error> {
+        let mut parameters = self.model.parameters.iter();
+        let index = parameters.position(|parameter| parameter.name == name);
+        let known = self.model.parameters.iter();
+        let unknown = || RequestError::UnknownParameter {
+            name: name.to_owned(),
+            known: known.map(|parameter| parameter.name.clone()).collect(),
+        };
+        match index {
+            None if name == "omega" => Ok(Variable::Omega),
+            None => Err(unknown().into()),
+            Some(index) => Ok(Variable::Parameter(index)),
+        }
+    }
+
+    pub(super) fn system(&self) -> &Arc<dyn System> {
+        &self.system
+    }
+
+    /// The equations by a flow of a tolerance.
+    ///
+    /// # Errors
+    /// If there is no flow.
+    pub(super) fn cycle(&self, tolerance: f64) -> Result<Cycle, Error> {
+        let point = self.point;
+        let (values, orbit) = (&point.parameters, &point.orbit);
+        Cycle::new(
+            &self.system,
+            values,
+            orbit,
+            self.varied,
+            tolerance,
+            &self.cancel,
+        )
+    }
+
+    /// What is known of the orbit.
+    ///
+    /// # Errors
+    /// If its motion cannot be continued.
+    pub(super) fn start(&self, cycle: &mut Cycle) -> Result<Start, SensitivityError> {
+        Ok(Start {
+            states: cycle.states(&self.point.orbit)?,
+            value: self.point.value,
+        })
+    }
+
+    /// Nothing yet, of a place on the branch.
+    pub(super) fn told(&self, condition: f64) -> Sensitivities {
+        let named = |variable: &Variable| match variable {
+            Variable::Omega => "omega".to_owned(),
+            Variable::Parameter(index) => self.model.parameters[*index].name.clone(),
+        };
+        let value = |variable: &Variable| match variable {
+            Variable::Omega => self.point.orbit.omega,
+            Variable::Parameter(index) => self.point.parameters[*index],
+        };
+        Sensitivities {
+            variables: self.variables.iter().map(named).collect(),
+            values: self.variables.iter().map(value).collect(),
+            varied: self.name.clone(),
+            kind: None,
+            place: Vec::new(),
+            measured: Vec::new(),
+            moving: Vec::new(),
+            missing: Vec::new(),
+            condition,
+        }
+    }
+
+    /// By one flow, without errors.
+    pub(super) fn quick(&self, rows: &[Row]) -> Result<Sensitivities, Error> {
+        let mut cycle = self.cycle(QUICK.0)?;
+        let mut start = self.start(&mut cycle)?;
+        self.settle(&mut cycle, &mut start)?;
+        let read = self.read(&mut cycle, &start, rows, QUICK.1)?;
+        let mut told = self.told(read.condition);
+        for (row, slope) in rows.iter().zip(read.slopes) {
+            let by = slope.by.into_iter().map(|value| Derivative {
+                value,
+                error: f64::INFINITY,
+            });
+            told.add(row, slope.value, by.collect());
+        }
+        Ok(told)
+    }
+
+    /// By two flows, with errors.
+    pub(super) fn of_point(&self, rows: &[Row]) -> Result<Sensitivities, Error> {
+        let mut cycle = self.cycle(FINE.0)?;
+        let mut start = self.start(&mut cycle)?;
+        self.settle(&mut cycle, &mut start)?;
+        self.at(&mut cycle, &start, rows)
+    }
+
+    /// The same at an orbit of the fine flow.
+    pub(super) fn at(
+        &self,
+        cycle: &mut Cycle,
+        start: &Start,
+        rows: &[Row],
+    ) -> Result<Sensitivities, Error> {
+        let fine = self.read(cycle, start, rows, FINE.1)?;
+        let mut own = self.cycle(COARSE.0)?;
+        let mut near = start.clone();
+        self.settle(&mut own, &mut near)?;
+        let coarse = self.read(&mut own, &near, rows, COARSE.1)?;
+        let rounding = ROUNDINGS * f64::EPSILON / fine.condition;
+        let mut told = self.told(fine.condition);
+        for (row, (fine, coarse)) in rows.iter().zip(fine.slopes.iter().zip(&coarse.slopes)) {
+            told.add(row, fine.value, apart(fine, coarse, rounding));
+        }
+        Ok(told)
+    }
+
+    /// And multipliers.
+    pub(super) fn with_multipliers(&self, rows: &[Row]) -> Result<Sensitivities, Error> {
+        let mut cycle = self.cycle(FINE.0)?;
+        let mut start = self.start(&mut cycle)?;
+        self.settle(&mut cycle, &mut start)?;
+        let mut told = self.at(&mut cycle, &start, rows)?;
+        self.add_multipliers(&mut cycle, &start, &mut told)?;
+        Ok(told)
+    }
+
+    /// Adds the derivatives of all multipliers at a fixed value of what is varied, or says why there are none.
+    pub(super) fn add_multipliers(
+        &self,
+        cycle: &mut Cycle,
+        start: &Start,
+        told: &mut Sensitivities,
+    ) -> Result<(), Error> {
+        let evaluated = cycle.evaluate(&start.states, &self.variables, &[])?;
+        let all = multipliers::of(&cycle.monodromy(&evaluated));
+        let directions = self.directions(&evaluated)?;
+        let changes = directions
+            .iter()
+            .map(|along| change::along(cycle, &start.states, &self.variables, along));
+        match changes.collect::<Result<Vec<change::Change>, SensitivityError>>() {
+            Ok(changes) => multipliers::add(&all, &changes, told),
+            Err(error) if error.is_cancelled() => return Err(error.into()),
+            Err(error) => told
+                .missing
+                .push(Missing::new("multipliers", error.to_string())),
+        }
+        Ok(())
+    }
+
+    /// Finds the orbit by another flow, at a fixed value of what is varied.
+    pub(super) fn settle(
+        &self,
+        cycle: &mut Cycle,
+        start: &mut Start,
+    ) -> Result<(), SensitivityError> {
+        cycle.set(self.varied, start.value)?;
+        cycle.solve(&mut start.states)
+    }
+
+    /// (2) of [`cycle`](super::cycle), by each variable.
+    fn directions(&self, evaluated: &Evaluated) -> Result<Vec<Along>, SensitivityError> {
+        let lu = evaluated.jacobian.clone().lu();
+        let count = self.variables.len();
+        let along = (0..count).map(|index| {
+            let moved = lu.solve(&-&evaluated.by[index]);
+            let mut weights = vec![0.0; count];
+            weights[index] = 1.0;
+            moved
+                .map(|states| Along { states, weights })
+                .ok_or(SensitivityError::Singular)
+        });
+        along.collect()
+    }
+
+    /// What is read off an orbit, by every variable at a fixed value of all others.
+    fn read(
+        &self,
+        cycle: &mut Cycle,
+        start: &Start,
+        rows: &[Row],
+        nodes: usize,
+    ) -> Result<Read, Error> {
+        let (slopes, places) = self.looked_at(cycle, start, rows, nodes)?;
+        let evaluated = cycle.evaluate(&start.states, &self.variables, &places.stops)?;
+        let along = self.directions(&evaluated)?;
+        let condition = condition(&evaluated.jacobian)?;
+        let reader = Reader::new(&places, &slopes, &evaluated, &self.variables, &along, cycle);
+        Ok(Read {
+            slopes: self.rows_of(&reader, &slopes, rows, along.len()),
+            condition,
+        })
+    }
+
+    /// The same along directions that are known.
+    pub(super) fn read_along(
+        &self,
+        cycle: &mut Cycle,
+        start: &Start,
+        rows: &[Row],
+        nodes: usize,
+        along: &[Along],
+    ) -> Result<Vec<Slope>, Error> {
+        cycle.set(self.varied, start.value)?;
+        let (slopes, places) = self.looked_at(cycle, start, rows, nodes)?;
+        let evaluated = cycle.evaluate(&start.states, &self.variables, &places.stops)?;
+        let reader = Reader::new(&places, &slopes, &evaluated, &self.variables, along, cycle);
+        Ok(self.rows_of(&reader, &slopes, rows, along.len()))
+    }
+
+    /// The signals of rows, and where they are looked at.
+    fn looked_at(
+        &self,
+        cycle: &mut Cycle,
+        start: &Start,
+        rows: &[Row],
+        nodes: usize,
+    ) -> Result<(Slopes, Places), Error> {
+        let mut asked: Vec<Asked> = Vec::new();
+        for row in rows {
+            if !asked.contains(&row.asked) {
+                asked.push(row.asked);
+            }
+        }
+        let mut slopes = Slopes::new(&self.system, &asked);
+        slopes.set(&cycle.values, cycle.omega);
+        let places = Places::of(cycle, &slopes, &start.states, needs(rows, nodes))?;
+        Ok((slopes, places))
+    }
+
+    fn rows_of(
+        &self,
+        reader: &Reader<'_>,
+        slopes: &Slopes,
+        rows: &[Row],
+        directions: usize,
+    ) -> Vec<Slope> {
+        let moments = reader.moments();
+        let measured = rows.iter().map(|row| {
+            let none = || Slope {
+                value: f64::NAN,
+                by: vec![f64::NAN; directions],
+            };
+            if let (Measure::OnPiece(piece), Asked::Contact(contact)) = (row.measure, row.asked) {
+                let pieces = self.model.pieces[contact];
+                return reader.on_pieces(contact, pieces)[piece - 1].clone();
+            }
+            let signal = slopes.position(row.asked);
+            let measured = signal.and_then(|signal| moments[signal].measure(row.measure));
+            measured.unwrap_or_else(none)
+        });
+        measured.collect()
+    }
+}
+
+impl Sensitivities {
+    /// Adds what was read off. An amplitude that vanishes has no derivative, nor has its phase: that is said.
+    pub(super) fn add(&mut self, row: &Row, value: f64, by: Vec<Derivative>) {
+        if value.is_nan() {
+            let why = "it is of a motion that vanishes, where it has no derivative";
+            self.missing.push(Missing::new(&row.name, why));
+            return;
+        }
+        self.measured.push(Measured {
+            name: row.name.clone(),
+            unit: row.unit.clone(),
+            value,
+            by,
+        });
+    }
+}
+
+/// Derivatives by two flows: the fine ones, with errors told by the coarse ones.
+pub(super) fn apart(fine: &Slope, coarse: &Slope, rounding: f64) -> Vec<Derivative> {
+    let largest = fine.by.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let both = fine.by.iter().zip(&coarse.by);
+    let by = both.map(|(&a, &b)| Derivative {
+        value: a,
+        error: (a - b).abs() + rounding * (a.abs() + f64::EPSILON * largest),
+    });
+    by.collect()
+}
+
+/// How far equations are from singular ones, as a part of their size.
+fn condition(jacobian: &DMatrix<f64>) -> Result<f64, SensitivityError> {
+    let inverse = jacobian.clone().lu().try_inverse();
+    let inverse = inverse.ok_or(SensitivityError::Singular)?;
+    Ok(1.0 / (jacobian.norm() * inverse.norm()))
+}
