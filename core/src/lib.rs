@@ -142,6 +142,7 @@ pub use system::System;
 /// Charts as SVG, and what a branch draws on them.
 #[cfg(feature = "plot")]
 pub mod chart {
+    pub use crate::report::band::Band;
     pub use crate::report::error::ViewError;
     pub use crate::report::picture::event_markers;
     pub use crate::report::view::{Frequency, View};

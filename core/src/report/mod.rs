@@ -1,5 +1,7 @@
 //! How results are drawn and written.
 
+#[cfg(feature = "plot")]
+pub(crate) mod band;
 #[cfg(feature = "serde")]
 mod checkpoint;
 #[cfg(feature = "plot")]
@@ -25,6 +27,8 @@ mod prefix;
 mod said;
 #[cfg(feature = "plot")]
 mod together;
+#[cfg(feature = "plot")]
+mod tornado;
 pub(crate) mod unit;
 #[cfg(feature = "plot")]
 pub(crate) mod view;
