@@ -13,6 +13,7 @@ use serde::Serialize;
 use super::backbone::Backbone;
 use super::options::Options;
 use super::run::Failure;
+use super::sensitive::{self, At};
 use super::structure::Reduction;
 
 /// A form in which results are written when all is computed.
@@ -33,7 +34,13 @@ fn forms(options: &Options) -> impl Iterator<Item = (Form, &Path)> {
 
 /// All files that are written, those too that are written on the way.
 pub fn paths(options: &Options) -> impl Iterator<Item = &Path> {
-    let besides = [&options.panels, &options.keep, &options.resume];
+    let besides = [
+        &options.panels,
+        &options.sensitivities,
+        &options.tornado,
+        &options.keep,
+        &options.resume,
+    ];
     let besides = besides.into_iter().filter_map(|path| path.as_deref());
     forms(options).map(|(_, path)| path).chain(besides)
 }
@@ -47,18 +54,23 @@ pub fn write(
     model: &dyn System,
     record: &Record<'_>,
     charts: &[Chart],
+    sensitivities: &[At],
 ) -> Result<(), Failure> {
     for (form, path) in forms(options) {
         let contents = match form {
             Form::Picture => Ok(page(charts.to_vec()).into_bytes()),
             Form::Table => Ok(table(model, record.branches).to_csv().into_bytes()),
-            Form::Json => json(record),
+            Form::Json if sensitivities.is_empty() => json(record),
+            Form::Json => text(&WithSensitivities {
+                record,
+                sensitivities,
+            }),
         };
         contents
             .and_then(|contents| export::write(path, contents))
             .map_err(|error| Failure::File(path.to_path_buf(), error))?;
     }
-    Ok(())
+    sensitive::write(options, record.branches, sensitivities)
 }
 
 /// Charts as one picture.
@@ -102,7 +114,19 @@ pub struct Record<'r> {
     pub reduction: Option<&'r Reduction>,
 }
 
+/// The same, with derivatives by parameters.
+#[derive(Debug, Serialize)]
+struct WithSensitivities<'r> {
+    #[serde(flatten)]
+    record: &'r Record<'r>,
+    sensitivities: &'r [At],
+}
+
 pub(crate) fn json(record: &Record<'_>) -> io::Result<Vec<u8>> {
+    text(record)
+}
+
+fn text(record: &impl Serialize) -> io::Result<Vec<u8>> {
     let mut text = serde_json::to_vec(record)?;
     text.push(b'\n');
     Ok(text)

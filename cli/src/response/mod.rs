@@ -15,6 +15,7 @@ pub mod progress;
 pub mod resumed;
 pub mod run;
 pub mod search;
+pub mod sensitive;
 pub mod structure;
 pub mod summary;
 pub(crate) mod value;

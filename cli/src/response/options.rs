@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, ValueEnum};
 use hertzian::chart::View;
 use hertzian::observe::Wanted;
+use hertzian::sensitivity::Uncertain;
 use hertzian::stability::{Method, Projection, Sorting};
 
 use crate::look::{Axis, Look};
@@ -37,6 +38,7 @@ use super::structure::StructureOptions;
         hertzian response --model gear-pair --values 20     and what motions settle to at 20 values\n  \
         hertzian response --model FILE --plot tip:rms,stop:max --axis hz\n  \
         hertzian response --structure plate.toml --from 700 --to 1500\n  \
+        hertzian response --plot x:h1 --sensitivities slopes.csv --tornado moves.svg --uncertain zeta=5%,load=0.02\n  \
         hertzian response --model FILE --plot tip --stack 5 --scale db --events fold,period-doubling\n\n\
         Where the branch turns back or ends early, that from the other end is followed too, and where there is no stable orbit,\n\
         those of what motions settle to; what was joined is said. --one-branch leaves that out.\n\n\
@@ -210,6 +212,24 @@ pub struct Options {
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 
+    /// Write derivatives by omega and every parameter to this file, with errors: of what --plot names, or of everything that is read off an orbit, at
+    /// every orbit, and of where events are; and to --json
+    #[arg(long, value_name = "FILE")]
+    pub sensitivities: Option<PathBuf>,
+
+    /// Draw what moves each event most into this file: a bar for each parameter of --uncertain, or for one per cent of every one
+    #[arg(long, value_name = "FILE")]
+    pub tornado: Option<PathBuf>,
+
+    /// Standard uncertainties of parameters, of the parameter or as a part of its value: zeta=0.002,load=5%. They make a band around the curve
+    #[arg(
+        long,
+        value_name = "NAME=VALUE",
+        value_delimiter = ',',
+        conflicts_with_all = ["track", "backbone"]
+    )]
+    pub uncertain: Vec<Uncertain>,
+
     /// The first orbit is near one of this file, of `--json` or --keep: that whose value is nearest to the start of the range
     #[arg(long, value_name = "FILE", conflicts_with = "at_rest")]
     pub near: Option<PathBuf>,
@@ -360,6 +380,11 @@ impl Options {
             return Some(format!(
                 "--{option} does nothing beside --track: the chart is of curves in two parameters"
             ));
+        }
+        if !self.uncertain.is_empty() && given.has("stack") {
+            let fault =
+                "--uncertain draws a band around one curve, and --stack several: leave one out";
+            return Some(fault.to_owned());
         }
         if self.backbone && given.has("stack") {
             let fault =

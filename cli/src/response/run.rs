@@ -27,6 +27,7 @@ use super::places;
 use super::progress::{Progress, Seen};
 use super::resumed;
 use super::search;
+use super::sensitive;
 use super::structure::{self, Reduced};
 use super::summary;
 use crate::look::Axis;
@@ -149,9 +150,12 @@ pub fn run(
         Stop::Interrupted => None,
         _ => bifurcations::find(options, &*model, cancel, &mut seen)?,
     };
-    let draw = |view: &View| match &found {
-        Some(found) => found.chart(options, &*model, view),
-        None => picture(options, &diagram, &*model, view, cancel),
+    let draw = |view: &View| {
+        let (shown, chart) = match &found {
+            Some(found) => (&found.diagram, found.chart(options, &*model, view)?),
+            None => (&diagram, picture(options, &diagram, &*model, view, cancel)?),
+        };
+        sensitive::banded(options, shown, view, chart)
     };
     let (mut charts, undrawn) = drawn(options, draw)?;
     let all_drawn = undrawn.is_empty();
@@ -175,6 +179,7 @@ pub fn run(
             diagram = found.diagram;
         }
     }
+    let sensitivities = sensitive::find(options, &branches, cancel, &mut seen)?;
     let reduction = match &reduced {
         Some(reduced) => Some(reduced.of(&branches)?),
         None => None,
@@ -189,12 +194,13 @@ pub fn run(
         backbone: &backbone,
         reduction: reduction.as_ref(),
     };
-    files::write(options, &*model, &record, &charts)?;
+    files::write(options, &*model, &record, &charts, &sensitivities)?;
     let written: Vec<&Path> = files::paths(options).collect();
     Ok(Outcome {
         summary: summary::of(options, &branches[0], &at, &written)
             + &reduction.map_or_else(String::new, |reduction| reduction.summary())
-            + &further,
+            + &further
+            + &sensitive::summary(&branches, &sensitivities),
         complete: is_complete(options, &branches[0], &diagram, cancel, &mut warnings)
             && all_drawn
             && all_panels,
@@ -252,6 +258,7 @@ fn checked(
         known.check(&wanted)?;
     }
     search::check(options, &*model)?;
+    sensitive::check(options, &*model)?;
     bifurcations::check(options, &*model)?;
     Ok((model, reduced))
 }

@@ -1,6 +1,7 @@
 //! The subcommand `response`: what it accepts, and what it writes and says.
 
 mod accepted;
+mod sensitive;
 mod written;
 
 use hertzian::Cancel;
