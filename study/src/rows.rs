@@ -34,7 +34,7 @@ impl Of<'_> {
         if by.is_empty() {
             return Vec::new();
         }
-        match branch.event_sensitivities(event) {
+        match branch.event_sensitivities_of(event, &[]) {
             Ok(found) => {
                 let both = |name: &String| {
                     let found = found.of_place(name);

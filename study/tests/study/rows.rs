@@ -124,15 +124,22 @@ fn places_of_folds_move_as_their_neighbours_say() {
     }
 }
 
-/// Where a period doubles the place takes second derivatives, which there are not.
+hertzian::oscillator! {
+    /// Meets a stop that is preloaded.
+    Preloaded(x) {
+        param play = 1.0 > 0;
+        law stop(gap) { gap > play => 1 + 10*(gap - play), else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x) = 0.3*cos(omega*t);
+    }
+}
+
+/// Where a level is touched at which the force jumps.
 #[test]
 fn events_without_sensitivities_say_why() {
-    let variants = Variants::grid().over("zeta", Spread::list(&[0.032]));
-    let request = Request::response(2.0, 0.5)
-        .vary("drive", 1.0)
-        .by(Method::Shooting);
-    let study = Study::of(&OneSided::default()).variants(variants);
-    let keep = Keep::new().events(["period-doubling"]).sensitivities(true);
+    let variants = Variants::grid().over("play", Spread::list(&[1.0]));
+    let request = Request::response(0.5, 0.9).by(Method::Shooting);
+    let study = Study::of(&Preloaded::default()).variants(variants);
+    let keep = Keep::new().events(["grazing"]).sensitivities(true);
     let study = study
         .request(request)
         .keep(keep)
@@ -142,8 +149,8 @@ fn events_without_sensitivities_say_why() {
     assert!(!rows.is_empty());
     for row in &rows {
         let why = text(&study, row, "without");
-        assert!(why.contains("second derivatives"), "{why}");
-        for name in ["by_zeta", "error_by_omega"] {
+        assert!(why.contains("the force jumps"), "{why}");
+        for name in ["by_play", "error_by_play"] {
             assert_eq!(row[place(&study, name)], Value::Missing);
         }
     }
