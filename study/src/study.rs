@@ -292,9 +292,20 @@ impl Prepared {
         self.with(self.designed.values(index))
     }
 
-    /// The same at a value of the only thing that varies from variant to variant.
-    pub(crate) fn at_second(&self, value: f64) -> (Valued, Option<f64>) {
-        self.with(vec![value])
+    /// The same, with its frequency, at values of what varies along the branches and of the only thing that varies besides.
+    pub(crate) fn at_both(&self, [along, other]: [f64; 2]) -> (Valued, f64) {
+        let (system, omega) = self.with(vec![other]);
+        let mut values = vec![0.0; self.values.len()];
+        system.values(&mut values);
+        let mut parameters = self.system.facts().parameters.iter();
+        match parameters.position(|facts| facts.name == self.plan.request.vary) {
+            Some(place) => {
+                values[place] = along;
+                let system = Valued::new(&self.system, values);
+                (system, omega.unwrap_or(f64::NAN))
+            }
+            None => (system, along),
+        }
     }
 
     /// The same at values of what varies from variant to variant.
