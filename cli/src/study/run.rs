@@ -154,10 +154,16 @@ pub(super) fn kept(ran: &Ran, is_part: bool) -> Ended {
 fn said(ran: &Ran, is_part: bool) -> String {
     let of = if is_part { " of this part" } else { "" };
     let (now, seconds) = (ran.computed, ran.elapsed.as_secs_f64());
-    let busy = ran.worked.as_secs_f64() / seconds.max(1e-9);
+    // Rank 0 of several does not know how long the others worked.
+    let busy = if ran.worked.is_zero() {
+        String::new()
+    } else {
+        let busy = ran.worked.as_secs_f64() / seconds.max(1e-9);
+        format!(", {busy:.2} threads busy")
+    };
     let kept = ran.before + now;
     format!(
-        "computed   {now} variants in {seconds:.1} s, {busy:.2} threads busy; {kept} of {} are kept{of}\n",
+        "computed   {now} variants in {seconds:.1} s{busy}; {kept} of {} are kept{of}\n",
         ran.asked
     )
 }
