@@ -28,7 +28,7 @@ const LEVELS: usize = 7;
 const SHORTER: f64 = 0.2;
 const SHORTENED: usize = 6;
 /// Errors below this part of a matrix are small enough.
-const ENOUGH: f64 = 1e-10;
+const ENOUGH: f64 = 1e-8;
 /// An error that has grown by this from the best is noise.
 const WORSE: f64 = 4.0;
 

@@ -8,9 +8,9 @@ use crate::time::FlowError;
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SensitivityError {
-    /// Such an event does not move with parameters.
+    /// The place of such an event is that of another one, or none at other values of the parameters.
     #[error(
-        "the place of a {kind} has no derivative: where branches cross that no symmetry distinguishes, a change of a parameter parts them"
+        "the place of a {kind} has no derivative here: it is that of a doubling or a broken symmetry of the branch that is met, which has, or a change of a parameter parts the branches"
     )]
     Kind {
         /// The kind of the event.

@@ -114,9 +114,9 @@ impl Sensitive<'_> {
     ) -> Result<(), Error> {
         let mut start = moving.start();
         self.settle(cycle, &mut start)?;
-        let mut at = self.at(cycle, &start, rows)?;
+        let (mut at, read) = self.at(cycle, &start, rows)?;
         if multipliers {
-            self.add_multipliers(cycle, &start, &mut at)?;
+            self.add_multipliers(cycle, &start, &read, &mut at)?;
         }
         let own = (self.variables.iter()).position(|variable| *variable == self.varied);
         let moved = at.measured.iter().map(|row| {

@@ -49,8 +49,11 @@ pub(super) struct Start {
 
 /// What is read off by one flow and one rule.
 pub(super) struct Read {
-    pub(super) slopes: Vec<Slope>,
-    pub(super) condition: f64,
+    slopes: Vec<Slope>,
+    condition: f64,
+    /// The matrix over the period, and the directions that were read along.
+    monodromy: DMatrix<f64>,
+    along: Vec<Along>,
 }
 
 impl<'p> Sensitive<'p> {
@@ -175,7 +178,8 @@ impl<'p> Sensitive<'p> {
         let mut cycle = self.cycle(FINE.0)?;
         let mut start = self.start(&mut cycle)?;
         self.settle(&mut cycle, &mut start)?;
-        self.at(&mut cycle, &start, rows)
+        let (told, _) = self.at(&mut cycle, &start, rows)?;
+        Ok(told)
     }
 
     /// The same at an orbit of the fine flow.
@@ -184,7 +188,7 @@ impl<'p> Sensitive<'p> {
         cycle: &mut Cycle,
         start: &Start,
         rows: &[Row],
-    ) -> Result<Sensitivities, Error> {
+    ) -> Result<(Sensitivities, Read), Error> {
         let fine = self.read(cycle, start, rows, FINE.1)?;
         let mut own = self.cycle(COARSE.0)?;
         let mut near = start.clone();
@@ -195,7 +199,7 @@ impl<'p> Sensitive<'p> {
         for (row, (fine, coarse)) in rows.iter().zip(fine.slopes.iter().zip(&coarse.slopes)) {
             told.add(row, fine.value, apart(fine, coarse, rounding));
         }
-        Ok(told)
+        Ok((told, fine))
     }
 
     /// And multipliers.
@@ -203,8 +207,8 @@ impl<'p> Sensitive<'p> {
         let mut cycle = self.cycle(FINE.0)?;
         let mut start = self.start(&mut cycle)?;
         self.settle(&mut cycle, &mut start)?;
-        let mut told = self.at(&mut cycle, &start, rows)?;
-        self.add_multipliers(&mut cycle, &start, &mut told)?;
+        let (mut told, read) = self.at(&mut cycle, &start, rows)?;
+        self.add_multipliers(&mut cycle, &start, &read, &mut told)?;
         Ok(told)
     }
 
@@ -213,14 +217,13 @@ impl<'p> Sensitive<'p> {
         &self,
         cycle: &mut Cycle,
         start: &Start,
+        read: &Read,
         told: &mut Sensitivities,
     ) -> Result<(), Error> {
-        let evaluated = cycle.evaluate(&start.states, &self.variables, &[])?;
-        let all = multipliers::of(&cycle.monodromy(&evaluated));
-        let directions = self.directions(&evaluated)?;
-        let changes = directions
-            .iter()
-            .map(|along| change::along(cycle, &start.states, &self.variables, along));
+        let all = multipliers::of(&read.monodromy);
+        let directions = read.along.iter();
+        let changes =
+            directions.map(|along| change::along(cycle, &start.states, &self.variables, along));
         match changes.collect::<Result<Vec<change::Change>, SensitivityError>>() {
             Ok(changes) => multipliers::add(&all, &changes, told),
             Err(error) if error.is_cancelled() => return Err(error.into()),
@@ -272,6 +275,8 @@ impl<'p> Sensitive<'p> {
         Ok(Read {
             slopes: self.rows_of(&reader, &slopes, rows, along.len()),
             condition,
+            monodromy: cycle.monodromy(&evaluated),
+            along,
         })
     }
 
