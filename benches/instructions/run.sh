@@ -37,9 +37,10 @@ if ! command -v valgrind >/dev/null; then
     exit 0
 fi
 
-# With the features that the programs of the workspace ask for, so that the runtime is built once for all of them.
+# With the features that the programs of the workspace ask for, and with those of HERTZIAN_FEATURES where they are built with more, so that the
+# runtime is built once for all of them.
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$here/../../target}
-(cd "$here/../.." && cargo build --quiet --release --workspace --bin hertzian-instructions)
+(cd "$here/../.." && cargo build --quiet --release --workspace --features "${HERTZIAN_FEATURES:-}" --bin hertzian-instructions)
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
