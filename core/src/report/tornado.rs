@@ -9,6 +9,7 @@ use hertzian_chart::{Bar, Chart, Series};
 use crate::branches::branch::Branch;
 use crate::branches::point::Event;
 use crate::error::Error;
+use crate::model::request::RequestError;
 use crate::numeric::decimal::Decimal;
 use crate::report::labels::Labels;
 use crate::report::picture::plain;
@@ -65,7 +66,7 @@ impl Branch {
         let mut moved: Vec<(f64, Bar)> = Vec::new();
         let mut held: Vec<&str> = Vec::new();
         for own in uncertain {
-            let index = moves.place_of(&own.name)?;
+            let index = place_of(moves, &own.name)?;
             let Some(by) = moves.place.get(index).copied().flatten() else {
                 held.push(&own.name);
                 continue;
@@ -121,7 +122,7 @@ impl Branch {
         let mut parameters = self.model.parameters.iter();
         let parameter = parameters.find(|parameter| parameter.name == own.name);
         let unit = parameter.map_or("", |parameter| parameter.unit.as_str());
-        let (name, size) = (&own.name, own.in_words());
+        let (name, size) = (&own.name, in_words(own));
         match own.size {
             Uncertainty::Absolute(_) if !unit.is_empty() => {
                 format!("{name} = ({} ± {size}) {unit}", Decimal::plain(value))
@@ -152,4 +153,24 @@ fn significant(value: f64) -> Decimal {
     }
     let first = value.log10().floor() as i32;
     Decimal::to_error(value, 10_f64.powi(first + 1 - DIGITS))
+}
+
+/// How large an uncertainty is: `5 %`.
+fn in_words(own: &Uncertain) -> String {
+    own.size.to_string().replace('%', " %")
+}
+
+/// Where a variable stands.
+///
+/// # Errors
+/// If there is none of that name.
+fn place_of(moves: &Sensitivities, name: &str) -> Result<usize, Error> {
+    let place = moves.variables.iter().position(|own| own == name);
+    place.ok_or_else(|| {
+        RequestError::UnknownParameter {
+            name: name.to_owned(),
+            known: moves.variables.clone(),
+        }
+        .into()
+    })
 }

@@ -45,7 +45,7 @@ pub struct Derivative {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Measured {
-    /// What it is, as [`Wanted`] is written: `x:p2p`; `power` is the mean power of the load.
+    /// What it is, as [`Wanted`](crate::observe::Wanted) is written: `x:p2p`; `power` is the mean power of the load.
     pub name: String,
     /// Its unit; empty where there is none.
     pub unit: String,

@@ -3,9 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{Sensitivities, SensitivityError};
-use crate::error::Error;
-use crate::model::request::RequestError;
+use super::SensitivityError;
 
 /// A parameter, and its standard uncertainty. It is written as `zeta=0.002`, or `load=5%` of its value.
 ///
@@ -43,14 +41,6 @@ impl Uncertain {
             Uncertainty::Relative(part) => part * value.abs(),
         }
     }
-
-    /// How large it is, in words: `5 %`.
-    pub(crate) fn in_words(&self) -> String {
-        match self.size {
-            Uncertainty::Absolute(size) => size.to_string(),
-            Uncertainty::Relative(part) => format!("{} %", percent(part)),
-        }
-    }
 }
 
 /// A part in hundredths, without what rounding adds.
@@ -58,12 +48,18 @@ fn percent(part: f64) -> f64 {
     (part * 1e14).round() / 1e12
 }
 
+impl fmt::Display for Uncertainty {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Absolute(size) => write!(f, "{size}"),
+            Self::Relative(part) => write!(f, "{}%", percent(*part)),
+        }
+    }
+}
+
 impl fmt::Display for Uncertain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.size {
-            Uncertainty::Absolute(size) => write!(f, "{}={size}", self.name),
-            Uncertainty::Relative(part) => write!(f, "{}={}%", self.name, percent(part)),
-        }
+        write!(f, "{}={}", self.name, self.size)
     }
 }
 
@@ -90,23 +86,6 @@ impl FromStr for Uncertain {
             } else {
                 Uncertainty::Absolute(number)
             },
-        })
-    }
-}
-
-impl Sensitivities {
-    /// Where a variable stands.
-    ///
-    /// # Errors
-    /// If there is none of that name.
-    pub(crate) fn place_of(&self, name: &str) -> Result<usize, Error> {
-        let place = self.variables.iter().position(|own| own == name);
-        place.ok_or_else(|| {
-            RequestError::UnknownParameter {
-                name: name.to_owned(),
-                known: self.variables.clone(),
-            }
-            .into()
         })
     }
 }
