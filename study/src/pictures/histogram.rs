@@ -5,6 +5,7 @@
 
 use std::io;
 
+use hertzian::Cancel;
 use hertzian::chart::{Chart, Series};
 
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
@@ -21,7 +22,7 @@ const BINS: [f64; 2] = [5.0, 60.0];
 const POINTS: usize = 100;
 
 /// The chart.
-pub(super) fn chart(source: &Source<'_>, picture: &Picture) -> io::Result<Chart> {
+pub(super) fn chart(source: &Source<'_>, picture: &Picture, cancel: &Cancel) -> io::Result<Chart> {
     let study = source.study;
     let kind = picture.kind.as_deref().unwrap_or("fold");
     let mut places = places(source, picture, kind)?;
@@ -58,7 +59,7 @@ pub(super) fn chart(source: &Source<'_>, picture: &Picture) -> io::Result<Chart>
     if !picture.linear {
         return Ok(chart);
     }
-    Ok(match linear(study, picture, kind) {
+    Ok(match linear(study, picture, kind, cancel) {
         Ok(normal) => chart
             .trace(density(normal, bin * places.len() as f64))
             .remark(format!(

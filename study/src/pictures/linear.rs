@@ -23,14 +23,19 @@ use crate::table::Value;
 ///
 /// # Errors
 /// Why there is none.
-pub(super) fn linear(study: &Prepared, picture: &Picture, kind: &str) -> Result<Normal, String> {
+pub(super) fn linear(
+    study: &Prepared,
+    picture: &Picture,
+    kind: &str,
+    cancel: &Cancel,
+) -> Result<Normal, String> {
     let moments = study
         .designed
         .moments()
         .ok_or("nothing has a distribution")?;
     let middle = study.middle(moments.iter().map(|[mean, _]| *mean).collect());
-    let found = middle.found(0, &Cancel::new());
-    let rows = found.map(|found| found.rows).unwrap_or_default();
+    let found = middle.found(0, cancel);
+    let rows = found.map_err(|_| "it was interrupted")?.rows;
     let column = |name: &str| place(&middle, name);
     let [row, kinds, value, without, ended] =
         ["row", "kind", "value", "without", "ended"].map(column);

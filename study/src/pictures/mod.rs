@@ -19,8 +19,8 @@ use crate::study::Prepared;
 use crate::table::Value;
 
 impl Prepared {
-    /// Draws the pictures that the study asks for, of all blocks of these folders, into the first one. Curves that are tracked over a map end
-    /// where the token is cancelled.
+    /// Draws the pictures that the study asks for, of all blocks of these folders, into the first one. Curves that are tracked over a map, and
+    /// linear propagation, end where the token is cancelled.
     ///
     /// # Errors
     /// If one cannot be drawn or written.
@@ -43,7 +43,7 @@ impl Prepared {
                         chart
                     }
                 }
-                Shown::Histogram => histogram::chart(&source, picture).map_err(failed)?,
+                Shown::Histogram => histogram::chart(&source, picture, cancel).map_err(failed)?,
                 Shown::Fan => fan::chart(&source, picture).map_err(failed)?,
             };
             write(&chart, &path)?;
