@@ -1,7 +1,7 @@
 //! The subcommand `show`: what is in a file of branches, or of a map, without computing anything.
 
 use std::fmt::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
@@ -17,6 +17,7 @@ use crate::map;
 use crate::program::{self, Ended, Failed};
 use crate::response::files::page;
 use crate::response::places;
+use crate::response::sensitive;
 
 /// Says what is in a file that `response --json`, `response --keep` or `map --json` has written, and draws it. Nothing is computed.
 #[derive(Debug, Clone, PartialEq, Args)]
@@ -84,6 +85,7 @@ pub fn start(options: &Options) -> ExitCode {
 pub fn show(options: &Options) -> Result<Ended, Failed> {
     let mut all = Vec::new();
     let mut summary = String::new();
+    let mut moves = String::new();
     for path in &options.files {
         let read = match (Branch::read_all(path), &options.files[..]) {
             (Ok(read), _) => read,
@@ -108,6 +110,7 @@ pub fn show(options: &Options) -> Result<Ended, Failed> {
                 ),
             };
         }
+        moves += &moved(path, options, &read, all.len()).map_err(Failed::new)?;
         all.extend(read);
     }
     let count = all.len();
@@ -126,10 +129,28 @@ pub fn show(options: &Options) -> Result<Ended, Failed> {
     describe(&mut summary, &numbered, options).map_err(Failed::new)?;
     write(options, &numbered).map_err(Failed::new)?;
     Ok(Ended {
-        summary,
+        summary: summary + &moves,
         complaints: Vec::new(),
         complete: true,
     })
+}
+
+/// How the events of a file move, if that was written: of the branch that is asked for, where others were counted before.
+///
+/// # Errors
+/// If it cannot be read.
+fn moved(
+    path: &Path,
+    options: &Options,
+    branches: &[Branch],
+    before: usize,
+) -> Result<String, String> {
+    let mut all = sensitive::read(path)
+        .map_err(|error| format!("cannot read derivatives in {}: {error}", path.display()))?;
+    if let Some(number) = options.branch {
+        all.retain(|at| before + at.branch + 1 == number);
+    }
+    Ok(sensitive::summary(branches, &all))
 }
 
 /// Files by their names.

@@ -11,7 +11,8 @@ use hertzian::export::{self, Decimal};
 use hertzian::observe::Wanted;
 use hertzian::sensitivity::{Measured, Sensitivities, Uncertain};
 use hertzian::{Branch, Cancel, Error, Event, Model, Point, System};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::files::write_csv;
 use super::options::Options;
@@ -20,7 +21,7 @@ use super::run::Failure;
 use super::value::of_varied;
 
 /// Derivatives at one place of a branch.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct At {
     /// The number of the branch.
     pub branch: usize,
@@ -32,12 +33,12 @@ pub struct At {
     /// The derivatives; nothing where there are none.
     pub derivatives: Option<Sensitivities>,
     /// Why there are none.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
 }
 
 /// A point or an event, by its number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Place {
     /// A point.
@@ -294,6 +295,27 @@ pub fn banded(
     Ok(chart)
 }
 
+/// The key of derivatives in what `--json` writes.
+const KEY: &str = "sensitivities";
+
+/// The derivatives in a file of branches; none where it has none.
+///
+/// # Errors
+/// If the file cannot be read, or they are not what `--json` writes.
+pub fn read(path: &Path) -> io::Result<Vec<At>> {
+    let bytes = std::fs::read(path)?;
+    let key = format!("\"{KEY}\"");
+    if !bytes.windows(key.len()).any(|part| part == key.as_bytes()) {
+        return Ok(Vec::new());
+    }
+    // A branch that is kept while it is followed is another form, which has none.
+    let Ok(Value::Object(mut all)) = serde_json::from_slice(&bytes) else {
+        return Ok(Vec::new());
+    };
+    let all = all.remove(KEY).map(serde_json::from_value);
+    Ok(all.transpose()?.unwrap_or_default())
+}
+
 /// How events move, for people.
 pub fn summary(branches: &[Branch], all: &[At]) -> String {
     let mut text = String::new();
@@ -301,8 +323,13 @@ pub fn summary(branches: &[Branch], all: &[At]) -> String {
         let Place::Event(index) = at.place else {
             continue;
         };
-        let branch = &branches[at.branch];
-        let kind = branch.events[index].kind;
+        let branch = branches.get(at.branch);
+        let event = branch.and_then(|branch| branch.events.get(index));
+        // What was read from a file may be of other branches.
+        let (Some(branch), Some(event)) = (branch, event) else {
+            continue;
+        };
+        let kind = event.kind;
         let value = of_varied(branch, Decimal::rounded(at.value, 6));
         let moves = match (&at.derivatives, &at.why) {
             (Some(found), _) => by_all(found),

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use hertzian_cli::command::{Program, Task};
+
 use super::{COARSE, all, coarse, read, run_with};
 use crate::folder::Folder;
 
@@ -65,7 +67,8 @@ fn of_a_linear_oscillator_are_those_of_the_formula() {
 #[test]
 fn of_folds_are_in_the_table_the_summary_and_a_picture() {
     let folder = Folder::new("tornado");
-    let [table, tornado] = ["slopes.csv", "tornado.svg"].map(|name| folder.file(name));
+    let names = ["slopes.csv", "tornado.svg", "a.json"];
+    let [table, tornado, json] = names.map(|name| folder.file(name));
     let asked = [
         "--sensitivities",
         &table,
@@ -75,6 +78,8 @@ fn of_folds_are_in_the_table_the_summary_and_a_picture() {
         "zeta=5%,load=0.02",
         "--plot",
         "x:p2p",
+        "--json",
+        &json,
     ];
     let outcome = coarse(&folder, &asked).expect("a branch");
     assert!(
@@ -99,6 +104,23 @@ fn of_folds_are_in_the_table_the_summary_and_a_picture() {
     ] {
         assert!(tornado.contains(part), "{part}");
     }
+    // What was written is read back.
+    let show = |words: &[&str]| {
+        let words = [&["hertzian", "show", &json], words].concat();
+        let program = Program::read(words.into_iter().map(Into::into)).expect("options");
+        let Task::Show(options) = program.task else {
+            panic!("another task");
+        };
+        hertzian_cli::show::show(&options)
+            .expect("a summary")
+            .summary
+    };
+    let line = outcome
+        .summary
+        .lines()
+        .find(|line| line.contains("domega/dzeta"));
+    let line = line.expect("a line of an event");
+    assert!(show(&[]).contains(line) && show(&["--branch", "1"]).contains(line));
     let picture = fs::read_to_string(folder.file("response.svg")).expect("a picture");
     assert!(picture.contains("± zeta=5%, load=0.02"));
 }
