@@ -176,6 +176,20 @@ fn name_of(by: By) -> String {
     name.map_or_else(String::new, |name| name.get_name().to_owned())
 }
 
+/// What a search found, as the page says it.
+fn in_sentences(line: &str) -> String {
+    for (word, said) in [
+        ("searched", "No branch is stable here, so motions were followed in time at"),
+        ("missed", "Not all could be searched at"),
+        ("no orbit", "Nothing that repeats was found for"),
+    ] {
+        if let Some(rest) = line.strip_prefix(word) {
+            return format!("{said} {}", rest.trim_start());
+        }
+    }
+    line.to_owned()
+}
+
 /// How branches ended that did not reach the end of the range, and what was searched.
 fn ends(traced: &Traced) -> Vec<String> {
     let several = traced.diagram.branches.len() > 1;
@@ -197,16 +211,7 @@ fn ends(traced: &Traced) -> Vec<String> {
     let mut text = String::new();
     // Writing to a string does not fail.
     let _ = covered::write_search(&mut text, &traced.diagram, &traced.asked.varied);
-    let lines = text.lines().map(|line| {
-        let mut words = line.splitn(2, ' ');
-        let (first, rest) = (words.next(), words.next());
-        format!(
-            "{}: {}",
-            first.unwrap_or_default(),
-            rest.unwrap_or_default().trim()
-        )
-    });
-    notes.extend(lines);
+    notes.extend(text.lines().map(in_sentences));
     for omitted in &traced.diagram.omitted {
         let failed = matches!(
             omitted.reason,

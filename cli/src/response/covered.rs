@@ -122,7 +122,7 @@ fn describe_search(searched: &Searched) -> String {
         ));
     }
     let long = format!(
-        "have not settled to periods up to {} after {} periods",
+        "have not settled to periods up to {} after {} periods (slow, or never periodic)",
         searched.longest, searched.patience
     );
     for (fate, what) in [

@@ -115,6 +115,8 @@ pub(super) struct Passed {
     pub(super) free: Vec<f64>,
     /// What the forces do to the states, at the nodes and the end.
     pub(super) forced: Vec<f64>,
+    /// What all forces together do to a state, state by state, node by node.
+    pub(super) load: Vec<f64>,
     /// The states at the beginning, the nodes and the end.
     pub(super) states: Vec<f64>,
     /// How the force of each contact changes with its gap at the nodes, if derivatives were asked for.

@@ -236,6 +236,11 @@ impl Integrals {
         &self.forced[which][state * self.targets()..][..self.targets()]
     }
 
+    /// What all forces together do to a state, state by state, node by node.
+    pub(super) fn load(&self) -> &[f64] {
+        &self.load[0][..self.nodes * self.row.len()]
+    }
+
     /// How that changes with the time.
     pub(super) fn driven(&self, state: usize) -> &[f64] {
         &self.by_time[state * self.targets()..][..self.targets()]

@@ -2,9 +2,11 @@
 
 use std::cell::RefCell;
 
-use super::block::times;
-use super::equations::Equations;
+use super::block::{Block, times};
+use super::equations::{Equations, Passed};
 use super::extremes::Extremes;
+use super::nodes::{Nodes, points_for};
+use super::partway::Partway;
 use super::values::{Contact, Instant, pair};
 use crate::time;
 
@@ -30,6 +32,7 @@ struct Room {
     rows: [Vec<f64>; 3],
     weights: Vec<f64>,
     steady: Vec<f64>,
+    partway: Partway,
 }
 
 impl<'e> Motion<'e> {
@@ -40,6 +43,7 @@ impl<'e> Motion<'e> {
             rows: std::array::from_fn(|_| states()),
             weights: Vec::new(),
             steady: states(),
+            partway: Partway::default(),
         };
         Self {
             equations,
@@ -105,25 +109,59 @@ impl<'e> Motion<'e> {
             0.0
         };
         values.write_steady(phase, &mut room.steady, None);
-        let forced = !of.active.is_empty() && !passed.forced.is_empty();
-        if forced {
-            of.nodes.through_ends(psi, &mut room.weights);
-        }
         for (r, block) in values.linear.blocks.iter().enumerate() {
             let free = times(block.exponential(time), pair(&passed.free, r));
             for i in 0..2 {
                 let at = 2 * r + i;
                 room.states[at] = free[i] + room.steady[at];
-                if forced {
-                    let targets = passed.forced.chunks_exact(skeleton.order);
-                    let pairs = room.weights.iter().zip(targets);
-                    room.states[at] += pairs
-                        .map(|(weight, forced)| weight * forced[at])
-                        .sum::<f64>();
-                }
             }
         }
+        if !of.active.is_empty() && !passed.forced.is_empty() {
+            self.add_forced(of.nodes, passed, psi, room);
+        }
         values.add_resonant(from, time, &mut room.states);
+    }
+
+    /// Adds what the forces of an interval have done to the states up to a part of it. Of slow pairs the polynomial through what is known at the
+    /// targets tells it. Fast ones ring between the targets, and are followed there: with (1) of [`integrals`](super::integrals), up to
+    /// any place.
+    fn add_forced(&self, nodes: &'static Nodes, passed: &Passed, psi: f64, room: &mut Room) {
+        let Equations {
+            values, skeleton, ..
+        } = self.equations;
+        let order = skeleton.order;
+        let whole = (passed.phases[1] - passed.phases[0]) / values.base;
+        let blocks = &values.linear.blocks;
+        let turns = |block: &Block| block.rate() * whole.abs();
+        let fastest = blocks.iter().map(turns).fold(0.0, f64::max);
+        let followed = nodes.followed();
+        if fastest > followed {
+            let turn = fastest * nodes.widest();
+            nodes.partway(psi, points_for(turn), &mut room.partway);
+        }
+        nodes.through_ends(psi, &mut room.weights);
+        for (r, block) in blocks.iter().enumerate() {
+            if turns(block) > followed {
+                let n = nodes.count();
+                let load = &passed.load[2 * r * n..][..2 * n];
+                let known = room.partway.done.map_or([0.0; 2], |target| {
+                    pair(&passed.forced[target * order..][..order], r)
+                });
+                let forced = room
+                    .partway
+                    .carry(block, whole, known, load.split_at(n).into());
+                room.states[2 * r] += forced[0];
+                room.states[2 * r + 1] += forced[1];
+                continue;
+            }
+            for at in 2 * r..2 * r + 2 {
+                let targets = passed.forced.chunks_exact(order);
+                let pairs = room.weights.iter().zip(targets);
+                room.states[at] += pairs
+                    .map(|(weight, forced)| weight * forced[at])
+                    .sum::<f64>();
+            }
+        }
     }
 
     /// Gap of a contact and its slope by the phase, within an interval.

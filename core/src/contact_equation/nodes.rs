@@ -16,6 +16,7 @@
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::grading::Grading;
+use super::partway::Partway;
 use crate::numeric::fourier::gauss;
 
 /// Numbers of nodes of a stretch.
@@ -30,6 +31,13 @@ const _: () = {
 };
 /// Points of the rules between two targets: of one that serves slow kernels, and of finer ones.
 const POINTS: [usize; 3] = [12, 24, 48];
+
+/// What turns over a stretch is followed by the polynomial through its targets if that is as near as this, of its amplitude.
+const FOLLOWED: f64 = 1e-12;
+/// Angles that are tried, and by what they grow.
+const SLOW: f64 = 1e-2;
+const FAST: f64 = 1e2;
+const FASTER: f64 = 1.1;
 
 /// Nodes with everything that depends on their number and grading alone.
 #[derive(Debug)]
@@ -55,6 +63,8 @@ pub(super) struct Nodes {
     between: [OnceLock<Between>; POINTS.len()],
     /// The longest way between two targets.
     widest: f64,
+    /// See [`Nodes::followed`].
+    followed: OnceLock<f64>,
 }
 
 /// A rule between successive targets.
@@ -121,6 +131,7 @@ impl Nodes {
             twice: Vec::new(),
             between: Default::default(),
             widest: 0.0,
+            followed: OnceLock::new(),
             y,
         };
         nodes.integrate();
@@ -184,11 +195,8 @@ impl Nodes {
 
     /// The rule that serves a kernel which turns by this angle, or decays by so many powers of `e`, over a whole stretch.
     pub(super) fn between(&self, fast: f64) -> &Between {
-        let turn = fast * self.widest;
-        let index = POINTS
-            .iter()
-            .position(|&points| turn <= 0.25 * points as f64)
-            .unwrap_or(POINTS.len() - 1);
+        let points = points_for(fast * self.widest);
+        let index = POINTS.iter().position(|of| *of == points).unwrap_or(0);
         self.between[index].get_or_init(|| self.rule_between(POINTS[index]))
     }
 
@@ -235,6 +243,60 @@ impl Nodes {
         }
     }
 
+    /// The last target that is not beyond a `psi`, if there is one, and a rule from there to it.
+    pub(super) fn partway(&self, psi: f64, points: usize, rule: &mut Partway) {
+        let n = self.count();
+        let done = self.targets.partition_point(|target| *target <= psi);
+        rule.done = done.checked_sub(1);
+        let known = rule.done.map_or(0.0, |target| self.targets[target]);
+        rule.left = psi - known;
+        rule.points.clear();
+        rule.values.clear();
+        if done > n || psi <= known {
+            return;
+        }
+        let from = rule.done.map_or(-1.0, |target| self.y[target]);
+        let length = self.map.inverse(psi) - from;
+        let gauss = gauss::rule(points);
+        rule.values.resize(points * n, 0.0);
+        let rows = rule.values.chunks_exact_mut(n);
+        for ((s, w), values) in gauss.nodes.iter().zip(&gauss.weights).zip(rows) {
+            let y = from + length * s;
+            self.polynomials_at(y, values);
+            let (left, weight) = (psi - self.map.psi(y), w * length * self.map.slope(y));
+            rule.points.push([left, weight]);
+        }
+    }
+
+    /// The largest angle by which something may turn over the stretch so that the polynomial through all targets follows it.
+    pub(super) fn followed(&self) -> f64 {
+        *self.followed.get_or_init(|| {
+            let mut fast = SLOW;
+            while fast < FAST && self.missed(fast * FASTER) < FOLLOWED {
+                fast *= FASTER;
+            }
+            fast
+        })
+    }
+
+    /// How far the polynomials through all targets are from sine and cosine of such a turn, between targets.
+    fn missed(&self, fast: f64) -> f64 {
+        let mut weights = Vec::new();
+        let ends = [-1.0].iter().chain(&self.y);
+        let middles = ends.zip(self.y.iter().chain(&[1.0]));
+        let missed = middles.map(|(a, b)| {
+            let psi = self.map.psi(0.5 * (a + b));
+            self.through_ends(psi, &mut weights);
+            let of = |wave: &dyn Fn(f64) -> f64| {
+                let pairs = weights.iter().zip(&self.targets);
+                let found: f64 = pairs.map(|(weight, target)| weight * wave(*target)).sum();
+                (found - wave(psi)).abs()
+            };
+            of(&|psi| (fast * psi).sin()).max(of(&|psi| 1.0 - (fast * psi).cos()))
+        });
+        missed.fold(0.0, f64::max)
+    }
+
     /// What values at the nodes are at those of the next count with the same grading, row by row of these.
     pub(super) fn at_next(&self, next: &Self) -> &[f64] {
         self.next.get_or_init(|| {
@@ -275,6 +337,13 @@ impl Nodes {
             *value /= sum;
         }
     }
+}
+
+/// Points that serve a kernel which turns by this angle, or decays by so many powers of `e`, between two targets.
+pub(super) fn points_for(turn: f64) -> usize {
+    let fits = |points: &usize| turn <= 0.25 * *points as f64;
+    let found = POINTS.into_iter().find(fits);
+    found.unwrap_or(POINTS[POINTS.len() - 1])
 }
 
 /// `P_n(y)` by its recurrence (Abramowitz and Stegun (1964), equation 22.7.10).

@@ -138,6 +138,7 @@ impl Pass<'_> {
         passed.free.clear();
         passed.free.extend(free.map(|(y, steady)| y - steady));
         passed.forced.clear();
+        passed.load.clear();
         passed.stiffness.clear();
         if self.derivatives {
             let nodes = interval.active.len() * interval.nodes.count();
@@ -237,6 +238,9 @@ impl Pass<'_> {
     /// Leaves the states at the targets, and what forces did to them, for whoever looks at the motion.
     fn pass_by(&self, targets: usize, forced: bool, passed: &mut Passed) {
         let order = self.skeleton.order;
+        if forced {
+            passed.load.extend_from_slice(self.room.integrals.load());
+        }
         for target in 0..targets {
             let states = (0..order).map(|state| self.room.targets.state(target, state));
             passed.states.extend(states);

@@ -2,6 +2,9 @@
 
 import { short, svg } from './dom.js';
 
+// Width of a figure in pixels.
+const LETTER = 6.8;
+
 // How a value is spread along an axis: `to` a line on which the axis is even, and back.
 export const SCALES = {
   linear: { to: (v) => v, from: (u) => u },
@@ -32,8 +35,18 @@ function ticksOf(name, low, high, most) {
   return ticks;
 }
 
+// As many ticks along so many pixels as have numbers beside each other.
+function fitting(name, low, high, width) {
+  for (let most = Math.floor(width / 40); most > 2; most -= 1) {
+    const ticks = ticksOf(name, low, high, most);
+    const longest = Math.max(0, ...ticks.map(({ text }) => text.length));
+    if (ticks.length * (LETTER * longest + 12) < width) return ticks;
+  }
+  return ticksOf(name, low, high, 2);
+}
+
 // A frame with two axes. `domain` is in values; what is returned maps values to places and back.
-export function frame(width, height, { x, y, apart = 75, bottom = 40, top = 10, right = 22 }) {
+export function frame(width, height, { x, y, bottom = 40, top = 10, right = 22 }) {
   const scales = { x: SCALES[x.scale ?? 'linear'], y: SCALES[y.scale ?? 'linear'] };
   const ends = { x: x.domain.map(scales.x.to), y: y.domain.map(scales.y.to) };
   for (const axis of [ends.x, ends.y]) {
@@ -44,15 +57,15 @@ export function frame(width, height, { x, y, apart = 75, bottom = 40, top = 10, 
     }
   }
   const high = height - top - bottom;
-  const upright = ticksOf(y.scale ?? 'linear', ends.y[0], ends.y[1], Math.max(2, high / 42));
+  const upright = ticksOf(y.scale ?? 'linear', ends.y[0], ends.y[1], Math.max(2, high / 28));
   // Room for the longest number beside the name of the axis.
-  const left = 30 + 6.8 * Math.max(2, ...upright.map(({ text }) => text.length));
+  const left = 30 + LETTER * Math.max(2, ...upright.map(({ text }) => text.length));
   const box = { left, right: width - right, top, bottom: height - bottom };
   const px = (v) => box.left + ((scales.x.to(v) - ends.x[0]) / (ends.x[1] - ends.x[0])) * (box.right - box.left);
   const py = (v) => box.bottom - ((scales.y.to(v) - ends.y[0]) / (ends.y[1] - ends.y[0])) * (box.bottom - box.top);
   const value = (place) => scales.x.from(ends.x[0] + ((place - box.left) / (box.right - box.left)) * (ends.x[1] - ends.x[0]));
   const parts = [];
-  for (const { u, text } of ticksOf(x.scale ?? 'linear', ends.x[0], ends.x[1], Math.max(2, (box.right - box.left) / apart))) {
+  for (const { u, text } of fitting(x.scale ?? 'linear', ends.x[0], ends.x[1], box.right - box.left)) {
     const at = box.left + ((u - ends.x[0]) / (ends.x[1] - ends.x[0])) * (box.right - box.left);
     parts.push(svg('line', { class: 'grid', x1: at, x2: at, y1: box.top, y2: box.bottom }));
     parts.push(svg('text', { x: at, y: box.bottom + 15, 'text-anchor': 'middle', text }));

@@ -4,6 +4,9 @@ import { extent, frame, line } from './axes.js';
 import { byId, inUnit, short, svg } from './dom.js';
 import { state } from './state.js';
 
+// Marks that are nearer, in pixels, would lie upon each other.
+const NEAR = 9;
+
 const KINDS = {
   fold: 'the curve turns back: beyond it there is no motion of this kind near by, and what moves jumps to another branch',
   'period-doubling': 'from here on motions repeat after twice as many excitations',
@@ -26,6 +29,19 @@ export function mark(kind, x, y, size = 5) {
     grazing: `M${-1.2 * size} 0H${1.2 * size}M0 ${-1.2 * size}V${1.2 * size}`,
   };
   return svg('path', { class: 'mark', d: shapes[kind] ?? shapes.fold, transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})` });
+}
+
+// Events whose marks would lie upon each other are one mark with their number.
+function together(events, px, py) {
+  const groups = [];
+  for (const [number, event] of events.entries()) {
+    const [x, y] = [px(event.value), event.size === null ? NaN : py(event.size)];
+    if (!Number.isFinite(x) || !Number.isFinite(y)) continue;
+    const near = groups.find((group) => Math.hypot(group.x - x, group.y - y) < NEAR);
+    if (near) near.events.push(event);
+    else groups.push({ x, y, number, events: [event] });
+  }
+  return groups;
 }
 
 export const chart = {
@@ -118,21 +134,25 @@ export function draw({ dragging = false } = {}) {
   const curves = svg('g', { id: 'curve', class: curve.effort === 'screen' ? 'coarse' : 'exact', 'clip-path': 'url(#inside)' });
   for (const branch of curve.branches) for (const run of branch.runs) curves.append(svg('path', { class: run.verdict, d: line(run.places, px, py) }));
   const marks = svg('g', { id: 'marks' });
-  for (const [number, event] of curve.events.entries()) {
-    const [x, y] = [px(event.value), event.size === null ? NaN : py(event.size)];
-    if (!Number.isFinite(x) || !Number.isFinite(y)) continue;
-    const shape = mark(event.kind, x, y);
+  const groups = together(curve.events, px, py);
+  byId('many').hidden = groups.every(({ events }) => events.length === 1);
+  for (const { x, y, number, events } of groups) {
+    const shape = events.length === 1 ? mark(events[0].kind, x, y) : svg('circle', { class: 'many', cx: x, cy: y, r: 8 });
     shape.dataset.event = number;
-    shape.append(svg('title', { text: `${event.said}: ${meaning(event.kind)}` }));
+    shape.append(svg('title', { text: events.map((event) => `${event.said}: ${meaning(event.kind)}`).join('\n') }));
     marks.append(shape);
+    if (events.length > 1) marks.append(svg('text', { class: 'number', x, y: y + 4, text: events.length }));
   }
   const here = svg('g', { id: 'here' });
   if (state.at !== null) {
     const x = px(state.at);
     if (x >= box.left && x <= box.right) here.append(svg('line', { class: 'here', x1: x, x2: x, y1: box.top, y2: box.bottom }));
-    for (const { size, chosen } of chart.solutions) {
+    // The chosen one lies above the others.
+    const shown = chart.solutions.map((own, index) => ({ ...own, number: index + 1 })).sort((a, b) => a.chosen - b.chosen);
+    for (const { size, chosen, number } of shown) {
       if (size === null || !Number.isFinite(py(size))) continue;
-      here.append(svg('circle', { class: chosen ? 'solution chosen' : 'solution', cx: x, cy: py(size), r: chosen ? 6 : 5 }));
+      here.append(svg('circle', { class: chosen ? 'solution chosen' : 'solution', cx: x, cy: py(size), r: 8 }));
+      here.append(svg('text', { class: 'number', x, y: py(size) + 4, text: number }));
     }
   }
   const values = svg('g', { id: 'values', 'clip-path': 'url(#inside)' });

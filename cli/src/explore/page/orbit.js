@@ -31,7 +31,7 @@ const flat = (xs, ys) => xs.flatMap((x, i) => [x, ys[i]]);
 function traces(title, about, x, y, lines, shades = []) {
   const { drawing, width, height } = panel(title, about);
   const on = frame(width, height, {
-    apart: 45, bottom: 36,
+    bottom: 36,
     x: { label: x, domain: lines.even ? extent(lines.flatMap((l) => l.xs)) : padded(extent(lines.flatMap((l) => l.xs))) },
     y: { label: y, domain: padded(extent(lines.flatMap((l) => l.ys))) },
   });
@@ -97,7 +97,7 @@ function spectrum(orbit) {
   const { drawing, width, height } = panel('spectrum', `Amplitudes of ${orbit.signal}, in multiples of the excitation frequency; mean ${short(orbit.spectrum[0]?.[1] ?? 0)}`);
   const last = drawn.length > 0 ? drawn[drawn.length - 1][0] : 1;
   const on = frame(width, height, {
-    apart: 45, bottom: 36,
+    bottom: 36,
     x: { label: 'harmonic', domain: [0, last + 1] },
     y: { label: `amplitude of ${orbit.signal}`, scale: 'log', domain: [SMALLEST * (largest || 1), 2 * (largest || 1)] },
   });
@@ -109,7 +109,7 @@ function multipliers(orbit) {
   const { drawing, width, height } = panel('multipliers', 'Floquet multipliers and the unit circle: stable while all are inside');
   const size = Math.max(1.15, ...orbit.multipliers.map(([re, im]) => 1.1 * Math.hypot(re, im)));
   const wide = (size * (width - 70)) / Math.max(1, height - 46);
-  const on = frame(width, height, { apart: 45, bottom: 36, x: { label: 'real part', domain: [-wide, wide] }, y: { label: 'imaginary part', domain: [-size, size] } });
+  const on = frame(width, height, { bottom: 36, x: { label: 'real part', domain: [-wide, wide] }, y: { label: 'imaginary part', domain: [-size, size] } });
   drawing.append(...on.parts);
   drawing.append(svg('ellipse', { class: 'circle', cx: on.px(0), cy: on.py(0), rx: on.px(1) - on.px(0), ry: on.py(0) - on.py(1) }));
   for (const [re, im] of orbit.multipliers) drawing.append(svg('circle', { class: 'multiplier', cx: on.px(re), cy: on.py(im), r: 4 }, svg('title', { text: `${short(re, 6)} ${im < 0 ? '−' : '+'} ${short(Math.abs(im), 6)} i` })));

@@ -1,8 +1,10 @@
 // The motion as it is: masses at their places, surfaces where contacts begin, over and over.
 
-import { extent } from './axes.js';
+import { evenTicks, extent } from './axes.js';
+import { inUnit, short } from './dom.js';
 
 const SECONDS = 3; // for one period of the excitation
+const SCALE = 52; // pixels for the numbers at the left
 
 let frameId = null;
 
@@ -21,6 +23,26 @@ function at(times, values, time) {
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
+// Positions are told at the left, and zero by a line, where all coordinates have one unit.
+function scale(context, orbit, { low, high, y, width }) {
+  const [{ unit }] = orbit.motions;
+  if (orbit.motions.some((motion) => motion.unit !== unit)) return;
+  context.font = '11px system-ui, sans-serif';
+  context.textAlign = 'right';
+  context.fillStyle = colour('--soft');
+  context.strokeStyle = colour('--line');
+  context.lineWidth = 1;
+  for (const value of evenTicks(low, high, 5).filter((own) => y(own) > 22)) {
+    context.fillText(short(value, 4), SCALE - 12, y(value) + 4);
+    context.beginPath();
+    context.moveTo(SCALE - 8, y(value));
+    context.lineTo(value === 0 ? width : SCALE - 2, y(value));
+    context.stroke();
+  }
+  context.textAlign = 'left';
+  context.fillText(inUnit('position', unit), 2, 12);
+}
+
 function paint(canvas, orbit, time) {
   const { width, height } = canvas.getBoundingClientRect();
   const ratio = devicePixelRatio || 1;
@@ -36,9 +58,10 @@ function paint(canvas, orbit, time) {
   [low, high] = [low - pad, high + pad];
   // A positive coordinate points down, as a mass is pressed onto what is under it.
   const y = (value) => 18 + ((value - low) / (high - low)) * (height - 30);
-  const slot = width / orbit.motions.length;
+  scale(context, orbit, { low, high, y, width });
+  const slot = (width - SCALE) / orbit.motions.length;
   orbit.motions.forEach((motion, index) => {
-    const middle = slot * (index + 0.5);
+    const middle = SCALE + slot * (index + 0.5);
     const position = y(at(motion.times, motion.positions, time));
     const size = Math.min(15, slot / 6);
     for (const contact of surfaces.filter((candidate) => candidate.surface[0] === index)) {
