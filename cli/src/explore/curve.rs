@@ -179,7 +179,10 @@ fn name_of(by: By) -> String {
 /// What a search found, as the page says it.
 fn in_sentences(line: &str) -> String {
     for (word, said) in [
-        ("searched", "No branch is stable here, so motions were followed in time at"),
+        (
+            "searched",
+            "No stable motion was known here, so motions were followed in time at",
+        ),
         ("missed", "Not all could be searched at"),
         ("no orbit", "Nothing that repeats was found for"),
     ] {

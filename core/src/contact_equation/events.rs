@@ -320,11 +320,13 @@ pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
     let mut error = touch.error + SAFETY * read.shift.abs();
     run.equations.compute(&at.u, false);
     let mut u = at.u.clone();
-    // A step may lead over a stretch that begins and ends in it: equations that have it are those of its end.
+    // A step may lead over a stretch that begins and ends in it, and a touch beside another one may be found before it is watched: equations
+    // that have it are those of this orbit.
     let mut former = None;
-    let unfit = |run: &Run<'_>| run.equations.failed || run.fits(&at.u) == Fits::No;
-    if run.watched(&u, &touch.extreme).is_none() && unfit(run) {
-        error = f64::INFINITY;
+    if run.watched(&u, &touch.extreme).is_none() {
+        if run.equations.failed || run.fits(&at.u) == Fits::No {
+            error = f64::INFINITY;
+        }
         if let Some((equations, there)) = run.replanned(&u) {
             former = Some(std::mem::replace(&mut run.equations, equations));
             run.equations.compute(&there, false);

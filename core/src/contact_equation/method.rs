@@ -141,7 +141,13 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             let tests = match &self.last {
                 // The last orbit has other equations, in which it was looked at.
                 Some(last) if map.is_none() && last.value == at.parameter() => last.tests(),
-                _ => Tests::of(map.as_ref(), divisor(at)),
+                _ => {
+                    let map = map.or_else(|| {
+                        let (mut equations, point) = self.run.ordered(at)?;
+                        equations.map(&point.u)
+                    });
+                    Tests::of(map.as_ref(), divisor(at))
+                }
             };
             (at.u.clone(), tests)
         });
@@ -349,7 +355,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
         let Some(kind) = self.kind(zero) else {
             return ZeroOutcome::Nothing;
         };
-        let Some(mut event) = events::event(self.run, step, zero, kind) else {
+        let Some(mut event) = self.run.event(step, zero, kind) else {
             return ZeroOutcome::Unread;
         };
         let at = &zero.root.located.point.u;

@@ -28,6 +28,7 @@ mod motion;
 mod moving_stiffness;
 mod nodes;
 mod options;
+mod ordered;
 mod partway;
 mod pass;
 mod place;

@@ -139,3 +139,29 @@ fn gaps_that_tremble_are_followed_through_their_touches() {
         super::events_agree(&FrequencyResponse::of(&Row {}).from(from).to(to));
     }
 }
+
+crate::oscillator! {
+    /// Four masses in a row, of which the first two hit stops and the last is driven.
+    TwoStops(q[4]) {
+        law stop(gap) { gap > 0 => 100*gap, else => 0 }
+        ddot(q[0]) + 0.03*(dot(q[0]) - dot(q[1])) + q[0] - q[1] + stop(q[0] - 1) = 0;
+        ddot(q[1]) + 0.03*(2*dot(q[1]) - dot(q[0]) - dot(q[2])) + 2*q[1] - q[0] - q[2] + stop(q[1] - 1) = 0;
+        ddot(q[2]) + 0.03*(2*dot(q[2]) - dot(q[1]) - dot(q[3])) + 2*q[2] - q[1] - q[3] = 0;
+        ddot(q[3]) + 0.03*(2*dot(q[3]) - dot(q[2])) + 2*q[3] - q[2] = 0.1*cos(omega*t);
+    }
+}
+
+/// Between the two points around a doubling switches of both stops pass each other. Its place is that of shooting at 1e-12.
+#[test]
+fn an_event_beside_a_change_of_order_is_found() {
+    for [from, to] in [[0.15, 0.8], [0.8, 0.15]] {
+        let request = FrequencyResponse::of(&TwoStops {}).from(from).to(to);
+        let branch = request.by(ContactEquation::new()).run().unwrap();
+        let doublings = branch.events.iter();
+        let doublings = doublings.filter(|event| event.kind == EventKind::PeriodDoubling);
+        let apart = doublings.map(|event| (event.point.value - 0.420_967_986_717_9).abs());
+        let nearest = apart.fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-12, "{from} {nearest:e}");
+        assert_eq!(branch.turns, []);
+    }
+}

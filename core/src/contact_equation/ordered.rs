@@ -1,0 +1,62 @@
+//! Orbits between two points of a branch that have the switches of different gaps in another order.
+//!
+//! Equations are exact while their switches are in the order that they are told in. Where that changes within a step, those of either end are
+//! right to first order beyond the change alone: test functions there, and events, are those of equations that are told in the order of the
+//! orbit itself, which is solved for again with them at the same value.
+
+use super::equations::Equations;
+use super::events;
+use super::run::Run;
+use crate::branches::point::Event;
+use crate::branches::problem::Zero;
+use crate::branches::solve;
+use crate::continuation::follow::{CurvePoint, Step};
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::event::EventKind;
+
+/// What the order changes is small.
+const OPTIONS: NewtonOptions = NewtonOptions {
+    tolerance: 1e-11,
+    iterations: 8,
+    damped: false,
+};
+
+impl Run<'_> {
+    /// Equations with the switches of an orbit in their order, and the orbit by them. Nothing where the present ones have them so, or where
+    /// none are found.
+    pub(super) fn ordered(&mut self, at: &CurvePoint) -> Option<(Equations, CurvePoint)> {
+        self.equations.compute(&at.u, false);
+        if self.equations.failed || self.equations.is_in_order() {
+            return None;
+        }
+        let (mut equations, near) = self.replanned(&at.u)?;
+        let mut point = self.point_in(at, &equations, &near)?;
+        let mut newton = Newton::new(&equations);
+        solve::at_value(&mut equations, &mut newton, &mut point.u, OPTIONS).ok()?;
+        equations.compute(&point.u, false);
+        let fits = !equations.failed && equations.is_in_order();
+        fits.then_some((equations, point))
+    }
+
+    /// The event at a zero, by equations that have the switches in their order there.
+    pub(super) fn event(&mut self, step: Step<'_>, zero: &Zero, kind: EventKind) -> Option<Event> {
+        // Where branches cross, what is asked for lies in the direction of the step, which is told in its own unknowns.
+        let crosses = zero.change.kind == EventKind::BranchPoint;
+        let ordered = if crosses {
+            None
+        } else {
+            self.ordered(&zero.root.located.point)
+        };
+        let Some((equations, point)) = ordered else {
+            return events::event(self, step, zero, kind);
+        };
+        let mut zero = zero.clone();
+        zero.root.located.point = point;
+        let former = std::mem::replace(&mut self.equations, equations);
+        self.clear_finer();
+        let event = events::event(self, step, &zero, kind);
+        self.equations = former;
+        self.clear_finer();
+        event
+    }
+}
