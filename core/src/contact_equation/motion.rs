@@ -134,14 +134,13 @@ impl<'e> Motion<'e> {
         let blocks = &values.linear.blocks;
         let turns = |block: &Block| block.rate() * whole.abs();
         let fastest = blocks.iter().map(turns).fold(0.0, f64::max);
-        let followed = nodes.followed();
-        if fastest > followed {
+        if !nodes.follows(fastest) {
             let turn = fastest * nodes.widest();
             nodes.partway(psi, points_for(turn), &mut room.partway);
         }
         nodes.through_ends(psi, &mut room.weights);
         for (r, block) in blocks.iter().enumerate() {
-            if turns(block) > followed {
+            if !nodes.follows(turns(block)) {
                 let n = nodes.count();
                 let load = &passed.load[2 * r * n..][..2 * n];
                 let known = room.partway.done.map_or([0.0; 2], |target| {

@@ -34,10 +34,10 @@ const POINTS: [usize; 3] = [12, 24, 48];
 
 /// What turns over a stretch is followed by the polynomial through its targets if that is as near as this, of its amplitude.
 const FOLLOWED: f64 = 1e-12;
-/// Angles that are tried, and by what they grow.
-const SLOW: f64 = 1e-2;
-const FAST: f64 = 1e2;
-const FASTER: f64 = 1.1;
+/// Angles that are tried, and by what they grow. The slowest is followed by the fewest nodes.
+const SLOW: f64 = 0.5;
+const FAST: f64 = 50.0;
+const FASTER: f64 = 1.4;
 
 /// Nodes with everything that depends on their number and grading alone.
 #[derive(Debug)]
@@ -63,7 +63,7 @@ pub(super) struct Nodes {
     between: [OnceLock<Between>; POINTS.len()],
     /// The longest way between two targets.
     widest: f64,
-    /// See [`Nodes::followed`].
+    /// See [`Nodes::follows`].
     followed: OnceLock<f64>,
 }
 
@@ -268,15 +268,18 @@ impl Nodes {
         }
     }
 
-    /// The largest angle by which something may turn over the stretch so that the polynomial through all targets follows it.
-    pub(super) fn followed(&self) -> f64 {
-        *self.followed.get_or_init(|| {
-            let mut fast = SLOW;
-            while fast < FAST && self.missed(fast * FASTER) < FOLLOWED {
-                fast *= FASTER;
-            }
-            fast
-        })
+    /// Whether the polynomial through all targets follows what turns by this angle over the stretch.
+    pub(super) fn follows(&self, turn: f64) -> bool {
+        turn <= SLOW || turn <= *self.followed.get_or_init(|| self.find_followed())
+    }
+
+    /// The largest of the angles that are tried which is followed.
+    fn find_followed(&self) -> f64 {
+        let mut fast = SLOW;
+        while fast < FAST && self.missed(fast * FASTER) < FOLLOWED {
+            fast *= FASTER;
+        }
+        fast
     }
 
     /// How far the polynomials through all targets are from sine and cosine of such a turn, between targets.

@@ -57,7 +57,7 @@ mod tests {
         };
         for grading in [[1, 1], [3, 1], [2, 2]] {
             let nodes = Nodes::of(16, grading);
-            assert!(nodes.followed() < w * whole);
+            assert!(!nodes.follows(w * whole));
             let n = nodes.count();
             let zeros = vec![0.0; n];
             let forces = nodes.targets[..n].iter();
