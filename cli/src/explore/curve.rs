@@ -181,7 +181,7 @@ fn in_sentences(line: &str) -> String {
     for (word, said) in [
         (
             "searched",
-            "No stable motion was known here, so motions were followed in time at",
+            "Motions were simulated where no stable one was known yet:",
         ),
         ("missed", "Not all could be searched at"),
         ("no orbit", "Nothing that repeats was found for"),

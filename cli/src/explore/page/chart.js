@@ -1,15 +1,17 @@
 // The curve, its shadow and the pinned ones.
 
 import { extent, frame, line } from './axes.js';
-import { byId, inUnit, short, svg } from './dom.js';
+import { byId, el, inUnit, short, svg } from './dom.js';
 import { state } from './state.js';
 
 // Marks that are nearer, in pixels, would lie upon each other.
 const NEAR = 9;
+// Numbers of motions are as far from each other, at least.
+const APART = 17;
 
 const KINDS = {
-  fold: 'the curve turns back: beyond it there is no motion of this kind near by, and what moves jumps to another branch',
-  'period-doubling': 'from here on motions repeat after twice as many excitations',
+  fold: 'the curve turns back, and on the side that it leaves free what moves jumps to another branch',
+  'period-doubling': 'motions begin here that repeat after twice the period of this curve',
   'symmetry-breaking': 'the motion loses its symmetry',
   'branch-point': 'two curves of motions cross',
   'neimark-sacker': 'a second frequency begins',
@@ -113,7 +115,7 @@ export function draw({ dragging = false } = {}) {
   const seen = chart.measured.filter((set) => set.plot === curve.plot && set.varied === curve.varied);
   const on = frame(width, height, {
     x: { domain: horizontal(curve), scale: state.xscale, label: inUnit(curve.varied, curve.varied_unit) + bare(curve, curve.varied_unit) },
-    y: { domain: verticalOf([curve, ...others], seen, dragging), scale: state.yscale, label: inUnit(curve.label, state.yscale === 'db' ? curve.unit ? `dB, 0 at 1 ${curve.unit}` : 'dB, 0 at the size 1' : curve.unit) },
+    y: { domain: verticalOf([curve, ...others], seen, dragging), scale: state.yscale, label: inUnit(curve.label, state.yscale === 'db' ? curve.unit ? `dB re 1 ${curve.unit}` : 'dB re 1' : curve.unit) },
   });
   chart.place = on;
   byId('missing').hidden = state.yscale === 'linear' || !flats(curve).some((flat) => flat.some((v, i) => i % 2 === 1 && v !== null && v <= 0));
@@ -135,13 +137,15 @@ export function draw({ dragging = false } = {}) {
   for (const branch of curve.branches) for (const run of branch.runs) curves.append(svg('path', { class: run.verdict, d: line(run.places, px, py) }));
   const marks = svg('g', { id: 'marks' });
   const groups = together(curve.events, px, py);
+  const kinds = [...new Set(curve.events.map((event) => event.kind))];
+  byId('kinds').replaceChildren(...kinds.map((kind) => el('span', {}, svg('svg', { viewBox: '-7 -7 14 14' }, mark(kind, 0, 0)), kind.replaceAll('-', ' '))));
   byId('many').hidden = groups.every(({ events }) => events.length === 1);
   for (const { x, y, number, events } of groups) {
-    const shape = events.length === 1 ? mark(events[0].kind, x, y) : svg('circle', { class: 'many', cx: x, cy: y, r: 8 });
+    const shape = events.length === 1 ? mark(events[0].kind, x, y) : svg('rect', { class: 'mark', x: x - 13, y: y - 8, width: 26, height: 16, rx: 3 });
     shape.dataset.event = number;
     shape.append(svg('title', { text: events.map((event) => `${event.said}: ${meaning(event.kind)}`).join('\n') }));
     marks.append(shape);
-    if (events.length > 1) marks.append(svg('text', { class: 'number', x, y: y + 4, text: events.length }));
+    if (events.length > 1) marks.append(svg('text', { class: 'count', x, y: y + 4, text: `× ${events.length}` }));
   }
   const here = svg('g', { id: 'here' });
   if (state.at !== null) {
@@ -149,10 +153,17 @@ export function draw({ dragging = false } = {}) {
     if (x >= box.left && x <= box.right) here.append(svg('line', { class: 'here', x1: x, x2: x, y1: box.top, y2: box.bottom }));
     // The chosen one lies above the others.
     const shown = chart.solutions.map((own, index) => ({ ...own, number: index + 1 })).sort((a, b) => a.chosen - b.chosen);
+    const placed = [];
     for (const { size, chosen, number } of shown) {
-      if (size === null || !Number.isFinite(py(size))) continue;
-      here.append(svg('circle', { class: chosen ? 'solution chosen' : 'solution', cx: x, cy: py(size), r: 8 }));
-      here.append(svg('text', { class: 'number', x, y: py(size) + 4, text: number }));
+      const y = size === null ? NaN : py(size);
+      if (!Number.isFinite(y)) continue;
+      // Beside the line where another one is in the way, with a line to its place.
+      let aside = x;
+      while (placed.some(([u, v]) => Math.hypot(u - aside, v - y) < APART)) aside += aside + 2 * APART < box.right ? APART : -4 * APART;
+      placed.push([aside, y]);
+      if (aside !== x) here.append(svg('line', { class: 'lead', x1: x, x2: aside, y1: y, y2: y }));
+      here.append(svg('circle', { class: chosen ? 'solution chosen' : 'solution', cx: aside, cy: y, r: 8 }));
+      here.append(svg('text', { class: 'number', x: aside, y: y + 4, text: number }));
     }
   }
   const values = svg('g', { id: 'values', 'clip-path': 'url(#inside)' });

@@ -47,6 +47,7 @@ export function build(parameters, { moved, settled }) {
     const low = el('input', { inputmode: 'decimal', 'aria-label': `least ${name} of the slider` });
     const high = el('input', { inputmode: 'decimal', 'aria-label': `largest ${name} of the slider` });
     const log = el('input', { type: 'checkbox' });
+    const ends = [el('span'), el('span')];
     const show = () => {
       const own = state.values[name];
       slider.value = Number.isFinite(own) ? toPlace(range, own) : 0;
@@ -55,6 +56,7 @@ export function build(parameters, { moved, settled }) {
     };
     const showRange = () => {
       [low.value, high.value] = [short(range[0], 6), short(range[1], 6)];
+      ends.forEach((end, side) => { end.textContent = short(range[side], 3); });
       log.checked = range[2];
       show();
     };
@@ -90,6 +92,7 @@ export function build(parameters, { moved, settled }) {
       el('div', { class: 'top' }, el('label', { class: 'name', for: id, text: name }), value, el('span', { class: 'unit', text: parameter.unit })),
       el('p', { class: 'about', text: parameter.documentation }),
       slider,
+      el('p', { class: 'ends', 'aria-hidden': 'true' }, ...ends),
       el('details', {}, el('summary', { text: [defaulted, admitted].filter(Boolean).join('; ') }),
         el('label', {}, 'slider from ', low), el('label', {}, ' to ', high), el('label', {}, ' ', log, ' over decades')));
     row.show = show;

@@ -39,6 +39,7 @@ export function show(places) {
     parts.push('\n');
   });
   byId('underlay').replaceChildren(...parts);
+  byId('last-fine').hidden = places.length === 0;
   byId('messages').replaceChildren(...places.map((place) => el('li', {}, el('button', {
     type: 'button',
     text: `line ${place.line}, column ${place.column}: ${place.message}`,

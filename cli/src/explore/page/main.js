@@ -125,6 +125,10 @@ function listen() {
     if (fromHash(location.hash, session.models)) restore();
   });
   onChart();
+  const panel = byId('controls');
+  const below = () => { byId('below').hidden = panel.scrollTop + panel.clientHeight > panel.scrollHeight - 40; };
+  panel.addEventListener('scroll', below);
+  new ResizeObserver(below).observe(panel);
   let timer = null;
   new ResizeObserver(() => {
     draw();

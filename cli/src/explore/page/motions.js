@@ -64,7 +64,7 @@ function showOrbits() {
   byId('orbit').hidden = false;
   byId('orbit').classList.remove('old');
   const count = orbits.orbits.length;
-  byId('orbit-title').textContent = `Motions at ${state.varied} = ${orbits.said}: ${count === 0 ? 'none' : count}`;
+  byId('orbit-title').textContent = `${count === 0 ? 'No motion' : count === 1 ? '1 motion' : `${count} motions`} at ${state.varied} = ${orbits.said}${count > 1 ? ', in the order along the curve' : ''}`;
   byId('solutions').replaceChildren(...orbits.orbits.map((own, index) => el('button', {
     type: 'button', 'aria-pressed': String(index === chosen), text: `${own.verdict}, ${own.measured}`,
     onclick: () => { chosen = index; wantedSize = own.size; showOrbits(); },

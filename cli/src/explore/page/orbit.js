@@ -52,7 +52,7 @@ function even(lines) {
   return own;
 }
 
-const DASHES = ['solid', 'dashed', 'dotted'];
+const DASHES = ['solid', 'dash-dotted', 'dotted'];
 
 // Names in the colours of their lines, where there are several, and how these are drawn.
 function several(items) {
@@ -87,7 +87,7 @@ function phases(orbit) {
 function forces(orbit) {
   const lines = orbit.contacts.map((contact) => ({ xs: contact.gaps, ys: contact.forces, name: contact.name }));
   const unit = orbit.contacts[0].unit;
-  traces('force', ['Force over gap', ...several(orbit.contacts), '; left of zero is open, right of it penetration'], 'gap (penetration)', inUnit(`force of ${orbit.contacts.length === 1 ? orbit.contacts[0].name : 'contacts'}`, unit), lines);
+  traces('force', ['Force over penetration, the gap of the declaration', ...several(orbit.contacts), '; left of zero the contact is open'], 'penetration (negative: open)', inUnit(`force of ${orbit.contacts.length === 1 ? orbit.contacts[0].name : 'contacts'}`, unit), lines);
 }
 
 function spectrum(orbit) {

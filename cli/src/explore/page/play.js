@@ -62,11 +62,15 @@ function paint(canvas, orbit, time) {
   const slot = (width - SCALE) / orbit.motions.length;
   orbit.motions.forEach((motion, index) => {
     const middle = SCALE + slot * (index + 0.5);
-    const position = y(at(motion.times, motion.positions, time));
     const size = Math.min(15, slot / 6);
-    for (const contact of surfaces.filter((candidate) => candidate.surface[0] === index)) {
+    const own = surfaces.filter((candidate) => candidate.surface[0] === index);
+    // With surfaces on one side alone, the face that meets them is where the coordinate is.
+    const sides = own.map((contact) => Math.sign(contact.surface[1]));
+    const shift = sides.every((side) => side === sides[0]) ? -(sides[0] ?? 0) * size : 0;
+    const position = y(at(motion.times, motion.positions, time)) + shift;
+    for (const contact of own) {
       const [, factor, distance] = contact.surface;
-      const level = y(distance);
+      const level = y(distance) + shift;
       const under = factor > 0 ? 1 : -1;
       const touches = contact.closed.some(([from, to]) => time >= from && time <= to);
       context.strokeStyle = colour(touches ? '--accent' : '--soft');
