@@ -38,6 +38,8 @@ const BESIDE: f64 = 5e-3;
 /// What the last change is multiplied by.
 const SAFETY: f64 = 2.0;
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// More nodes move a touch by so many times its error before at most; farther away there is another one.
+const SAME_TOUCH: f64 = 100.0;
 /// What rounding leaves in the value of a touch.
 const TOUCHED: f64 = 4e-12;
 /// Of Newton's method with more nodes.
@@ -313,7 +315,15 @@ fn lagrange(places: &[f64; 4], s: f64) -> [f64; 4] {
 
 /// Keeps a touch of a level, solved again with more nodes until its value is known.
 pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
-    let at = &touch.located.point;
+    // Where switches of different gaps have passed each other, by equations that have them in their order.
+    match run.ordered(&touch.located.point) {
+        Some((equations, point)) => run.with(equations, |run| keep_touch(run, touch, &point)),
+        None => keep_touch(run, touch, &touch.located.point),
+    }
+}
+
+/// The same of a touch at a point of the equations that the run has.
+fn keep_touch(run: &mut Run<'_>, touch: &Touch, at: &CurvePoint) {
     let Some(mut read) = run.read_event(at) else {
         return;
     };
@@ -342,8 +352,11 @@ pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
         mut equations,
         u,
         changed,
-    }) = finer
-    {
+    }) = finer.filter(|found| {
+        // Farther away it is another touch.
+        let apart = (found.u[found.u.len() - 1] - at.parameter()).abs();
+        apart <= SAME_TOUCH * error
+    }) {
         error = SAFETY * changed;
         equations.compute(&u, false);
         let value = u[u.len() - 1];

@@ -137,17 +137,11 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
     fn tests(&mut self, at: &CurvePoint) -> &Tests {
         let known = self.tested.take().filter(|(u, _)| *u == at.u);
         let found = known.unwrap_or_else(|| {
-            let map = self.run.equations.map(&at.u);
+            let map = self.run.map(at);
             let tests = match &self.last {
                 // The last orbit has other equations, in which it was looked at.
                 Some(last) if map.is_none() && last.value == at.parameter() => last.tests(),
-                _ => {
-                    let map = map.or_else(|| {
-                        let (mut equations, point) = self.run.ordered(at)?;
-                        equations.map(&point.u)
-                    });
-                    Tests::of(map.as_ref(), divisor(at))
-                }
+                _ => Tests::of(map.as_ref(), divisor(at)),
             };
             (at.u.clone(), tests)
         });
@@ -284,10 +278,8 @@ impl BranchProblem for ContactBranch<'_, '_> {
         let point = &located.point;
         let unit = match tested::Test::of(change.test) {
             tested::Test::Slope => point.narrowness(),
-            tested::Test::Bordered => {
-                self.run.others(&point.u, 1.0) / point.parameter_slope().abs()
-            }
-            tested::Test::Plus => self.run.others(&point.u, -1.0),
+            tested::Test::Bordered => self.run.others(point, 1.0) / point.parameter_slope().abs(),
+            tested::Test::Plus => self.run.others(point, -1.0),
             tested::Test::Modulus(_) => return located.test.abs() <= self.last_error(),
         };
         located.test.abs() <= VANISHING * unit

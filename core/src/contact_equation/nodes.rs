@@ -34,7 +34,7 @@ const POINTS: [usize; 3] = [12, 24, 48];
 
 /// What turns over a stretch is followed by the polynomial through its targets if that is as near as this, of its amplitude.
 const FOLLOWED: f64 = 1e-12;
-/// Angles that are tried, and by what they grow. The slowest is followed by the fewest nodes.
+/// Angles that are tried, and by what they grow.
 const SLOW: f64 = 0.5;
 const FAST: f64 = 50.0;
 const FASTER: f64 = 1.4;
@@ -270,16 +270,17 @@ impl Nodes {
 
     /// Whether the polynomial through all targets follows what turns by this angle over the stretch.
     pub(super) fn follows(&self, turn: f64) -> bool {
-        turn <= SLOW || turn <= *self.followed.get_or_init(|| self.find_followed())
+        turn == 0.0 || turn <= *self.followed.get_or_init(|| self.find_followed())
     }
 
-    /// The largest of the angles that are tried which is followed.
+    /// The largest of the angles that are tried which is followed; zero if none is.
     fn find_followed(&self) -> f64 {
-        let mut fast = SLOW;
-        while fast < FAST && self.missed(fast * FASTER) < FOLLOWED {
+        let (mut followed, mut fast) = (0.0, SLOW);
+        while fast < FAST && self.missed(fast) < FOLLOWED {
+            followed = fast;
             fast *= FASTER;
         }
-        fast
+        followed
     }
 
     /// How far the polynomials through all targets are from sine and cosine of such a turn, between targets.

@@ -4,6 +4,8 @@
 //! right to first order beyond the change alone: test functions there, and events, are those of equations that are told in the order of the
 //! orbit itself, which is solved for again with them at the same value.
 
+use nalgebra::DMatrix;
+
 use super::equations::Equations;
 use super::events;
 use super::run::Run;
@@ -13,6 +15,7 @@ use crate::branches::solve;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::event::EventKind;
+use crate::shooting::tested::Test;
 
 /// What the order changes is small.
 const OPTIONS: NewtonOptions = NewtonOptions {
@@ -38,11 +41,21 @@ impl Run<'_> {
         fits.then_some((equations, point))
     }
 
-    /// The event at a zero, by equations that have the switches in their order there.
+    /// The map over the period, by equations that have the switches in their order.
+    pub(super) fn map(&mut self, at: &CurvePoint) -> Option<DMatrix<f64>> {
+        let map = self.equations.map(&at.u);
+        map.or_else(|| {
+            let (mut equations, point) = self.ordered(at)?;
+            equations.map(&point.u)
+        })
+    }
+
+    /// The event at a zero, by equations that have the switches in their order there. Folds, where nothing is solved for at a value, and
+    /// crossings of branches, which lie in the direction of the step and its unknowns, are those of the present equations.
     pub(super) fn event(&mut self, step: Step<'_>, zero: &Zero, kind: EventKind) -> Option<Event> {
-        // Where branches cross, what is asked for lies in the direction of the step, which is told in its own unknowns.
+        let of_value = Test::of(zero.change.test) == Test::Slope;
         let crosses = zero.change.kind == EventKind::BranchPoint;
-        let ordered = if crosses {
+        let ordered = if of_value || crosses {
             None
         } else {
             self.ordered(&zero.root.located.point)
@@ -52,11 +65,16 @@ impl Run<'_> {
         };
         let mut zero = zero.clone();
         zero.root.located.point = point;
+        self.with(equations, |run| events::event(run, step, &zero, kind))
+    }
+
+    /// Does something with other equations.
+    pub(super) fn with<T>(&mut self, equations: Equations, work: impl FnOnce(&mut Self) -> T) -> T {
         let former = std::mem::replace(&mut self.equations, equations);
-        self.clear_finer();
-        let event = events::event(self, step, &zero, kind);
+        let kept = (self.finer.take(), self.screened.take());
+        let done = work(self);
         self.equations = former;
-        self.clear_finer();
-        event
+        (self.finer, self.screened) = kept;
+        done
     }
 }

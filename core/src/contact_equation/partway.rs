@@ -57,6 +57,8 @@ mod tests {
         };
         for grading in [[1, 1], [3, 1], [2, 2]] {
             let nodes = Nodes::of(16, grading);
+            // Where a force is graded at an end, few nodes follow nothing that turns.
+            assert_eq!(Nodes::of(8, grading).follows(0.5), grading == [1, 1]);
             assert!(!nodes.follows(w * whole));
             let n = nodes.count();
             let zeros = vec![0.0; n];

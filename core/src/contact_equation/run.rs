@@ -185,8 +185,8 @@ impl<'r> Run<'r> {
     }
 
     /// What the other multipliers make of a determinant that vanishes with the one nearest to a critical value.
-    pub(super) fn others(&mut self, u: &[f64], critical: f64) -> f64 {
-        let Some(map) = self.equations.map(u) else {
+    pub(super) fn others(&mut self, at: &CurvePoint, critical: f64) -> f64 {
+        let Some(map) = self.map(at) else {
             return 1.0;
         };
         let distance = |m: &Complex<f64>| (m - critical).norm();

@@ -84,6 +84,49 @@ fn motions_return_the_way_they_came() {
     }
 }
 
+crate::oscillator! {
+    /// A stop of unbounded stiffness away from zero.
+    Away(x) {
+        param stop > 0;
+        law wall(gap) { gap > stop => 40*(gap - stop)^0.6, else => 0 }
+        ddot(x) + 0.05*dot(x) + x + wall(x) = 2*cos(omega*t) + stop;
+    }
+}
+
+crate::oscillator! {
+    /// The same from the stop on.
+    There(x) {
+        law wall(gap) { gap > 0 => 40*gap^0.6, else => 0 }
+        ddot(x) + 0.05*dot(x) + x + wall(x) = 2*cos(omega*t);
+    }
+}
+
+/// Beside a level that is not zero a distance is rounded, and an unbounded stiffness with it: the motion is as exact as ever, its derivatives
+/// by as much less as rounding says.
+#[test]
+fn levels_of_unbounded_stiffness_may_be_anywhere() {
+    for stop in [0.37, 5e3] {
+        let (away, there) = (Away { stop }, There {});
+        let flows = [
+            Integrated::new(&away, &[stop], 1.3, 1e-12).unwrap(),
+            Integrated::new(&there, &[], 1.3, 1e-12).unwrap(),
+        ];
+        let mut states = [[stop - 0.1, 0.8], [-0.1, 0.8]];
+        let mut tangents = [Tangent::of_state(1, None), Tangent::of_state(1, None)];
+        for ((mut flow, state), tangent) in flows.into_iter().zip(&mut states).zip(&mut tangents) {
+            flow.advance(0.0, TAU, state, Some(tangent), None).unwrap();
+            assert!(flow.work().switches > 1);
+        }
+        let unit = f64::EPSILON * stop.max(1.0);
+        assert!((states[0][0] - stop - states[1][0]).abs() < 1e-10 + 100.0 * unit);
+        let known = 1e-9 + 100.0 * 40.0 * unit.powf(0.6);
+        let pairs = tangents[0].columns.iter().zip(&tangents[1].columns);
+        for (a, b) in pairs {
+            assert!((a - b).abs() < known * b.abs().max(1.0), "{stop} {a} {b}");
+        }
+    }
+}
+
 /// What cannot be set is refused, and the flow goes on as before.
 #[test]
 fn values_that_cannot_be_are_refused() {

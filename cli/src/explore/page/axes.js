@@ -39,8 +39,9 @@ function ticksOf(name, low, high, most) {
 function fitting(name, low, high, width) {
   for (let most = Math.floor(width / 40); most > 2; most -= 1) {
     const ticks = ticksOf(name, low, high, most);
-    const longest = Math.max(0, ...ticks.map(({ text }) => text.length));
-    if (ticks.length * (LETTER * longest + 12) < width) return ticks;
+    const half = ticks.map(({ text }) => (LETTER * text.length) / 2);
+    const apart = ticks.slice(1).map(({ u }, i) => ((u - ticks[i].u) / (high - low)) * width - half[i] - half[i + 1]);
+    if (apart.every((own) => own > 10)) return ticks;
   }
   return ticksOf(name, low, high, 2);
 }

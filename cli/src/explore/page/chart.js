@@ -5,9 +5,11 @@ import { byId, el, inUnit, short, svg } from './dom.js';
 import { state } from './state.js';
 
 // Marks that are nearer, in pixels, would lie upon each other.
-const NEAR = 9;
+const NEAR = 14;
 // Numbers of motions are as far from each other, at least.
 const APART = 17;
+// Places on either side that are tried for them.
+const ASIDE = 12;
 
 const KINDS = {
   fold: 'the curve turns back, and on the side that it leaves free what moves jumps to another branch',
@@ -151,15 +153,16 @@ export function draw({ dragging = false } = {}) {
   if (state.at !== null) {
     const x = px(state.at);
     if (x >= box.left && x <= box.right) here.append(svg('line', { class: 'here', x1: x, x2: x, y1: box.top, y2: box.bottom }));
-    // The chosen one lies above the others.
-    const shown = chart.solutions.map((own, index) => ({ ...own, number: index + 1 })).sort((a, b) => a.chosen - b.chosen);
+    // The chosen one has its place first.
+    const shown = chart.solutions.map((own, index) => ({ ...own, number: index + 1 })).sort((a, b) => b.chosen - a.chosen);
     const placed = [];
     for (const { size, chosen, number } of shown) {
       const y = size === null ? NaN : py(size);
       if (!Number.isFinite(y)) continue;
-      // Beside the line where another one is in the way, with a line to its place.
-      let aside = x;
-      while (placed.some(([u, v]) => Math.hypot(u - aside, v - y) < APART)) aside += aside + 2 * APART < box.right ? APART : -4 * APART;
+      // Beside the line where others are in the way, with a line to its place.
+      const free = (u) => u > box.left && u < box.right && placed.every(([other, v]) => Math.hypot(other - u, v - y) >= APART - 1);
+      const places = Array.from({ length: 2 * ASIDE + 1 }, (_, k) => x + (k % 2 === 0 ? -1 : 1) * Math.ceil(k / 2) * APART);
+      const aside = places.find(free) ?? x;
       placed.push([aside, y]);
       if (aside !== x) here.append(svg('line', { class: 'lead', x1: x, x2: aside, y1: y, y2: y }));
       here.append(svg('circle', { class: chosen ? 'solution chosen' : 'solution', cx: aside, cy: y, r: 8 }));

@@ -128,6 +128,7 @@ function listen() {
   const panel = byId('controls');
   const below = () => { byId('below').hidden = panel.scrollTop + panel.clientHeight > panel.scrollHeight - 40; };
   panel.addEventListener('scroll', below);
+  panel.addEventListener('toggle', below, true);
   new ResizeObserver(below).observe(panel);
   let timer = null;
   new ResizeObserver(() => {

@@ -57,7 +57,7 @@ function paint(canvas, orbit, time) {
   const pad = 0.18 * (high - low || 1);
   [low, high] = [low - pad, high + pad];
   // A positive coordinate points down, as a mass is pressed onto what is under it.
-  const y = (value) => 18 + ((value - low) / (high - low)) * (height - 30);
+  const y = (value) => 30 + ((value - low) / (high - low)) * (height - 44);
   scale(context, orbit, { low, high, y, width });
   const slot = (width - SCALE) / orbit.motions.length;
   orbit.motions.forEach((motion, index) => {

@@ -160,7 +160,9 @@ fn an_event_beside_a_change_of_order_is_found() {
         let doublings = branch.events.iter();
         let doublings = doublings.filter(|event| event.kind == EventKind::PeriodDoubling);
         let apart = doublings.map(|event| (event.point.value - 0.420_967_986_717_9).abs());
-        let nearest = apart.fold(f64::INFINITY, f64::min);
+        let apart: Vec<f64> = apart.collect();
+        assert_eq!(apart.len(), 4);
+        let nearest = apart.into_iter().fold(f64::INFINITY, f64::min);
         assert!(nearest < 1e-12, "{from} {nearest:e}");
         assert_eq!(branch.turns, []);
     }

@@ -310,9 +310,14 @@ impl Field {
         piece: usize,
         rate: f64,
     ) -> f64 {
+        self.force(contact, piece, self.contacts[contact].levels[level], rate)
+    }
+
+    /// The force of a contact on a piece.
+    pub(crate) fn force(&self, contact: usize, piece: usize, gap: f64, rate: f64) -> f64 {
         let contact = &self.contacts[contact];
-        let (law, at) = (self.system.law(contact.law), contact.levels[level]);
-        single::force(law, On::Piece(piece), &contact.arguments, [at, rate])
+        let law = self.system.law(contact.law);
+        single::force(law, On::Piece(piece), &contact.arguments, [gap, rate])
     }
 
     /// How much a gap moves, beside a level, with a tangent column and with a variable.

@@ -133,6 +133,8 @@ pub(super) struct Engine<const S: usize> {
     pub(super) column_sizes: Vec<[f64; 2]>,
     /// Workspace for tangent columns.
     pub(super) columns: Vec<f64>,
+    /// Workspace for what a force does to the rates.
+    pub(super) pushed: Vec<f64>,
     /// What errors of coordinates and rates are relative to.
     pub(super) scales: Vec<[f64; 2]>,
     /// Widths to try next: of a plain step, and of steps that are graded at their start and at their end.
@@ -189,6 +191,7 @@ impl<const S: usize> Engine<S> {
             right: vec![0.0; n * S],
             column_sizes: Vec::new(),
             columns: Vec::new(),
+            pushed: vec![0.0; n],
             scales: vec![[0.0; 2]; n],
             widths: [0.0; 3],
             aim: None,

@@ -12,6 +12,7 @@ mod crossing;
 mod engine;
 mod kink;
 mod map;
+mod noise;
 mod roots;
 pub(super) mod rule;
 mod step;

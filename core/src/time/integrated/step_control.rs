@@ -358,7 +358,11 @@ impl<const S: usize> Engine<S> {
             && let Some(tangent) = tangent
         {
             self.linearise(tangent)?;
-            error = larger(error, self.carry(tangent, columns));
+            let mut of_tangent = self.carry(tangent, columns);
+            if of_tangent > 1.0 {
+                of_tangent /= (self.level_noise() / self.tolerance).max(1.0);
+            }
+            error = larger(error, of_tangent);
         }
         let width = self.trial.width;
         if !error.is_finite() {
