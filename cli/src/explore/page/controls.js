@@ -48,15 +48,22 @@ export function build(parameters, { moved, settled }) {
     const high = el('input', { inputmode: 'decimal', 'aria-label': `largest ${name} of the slider` });
     const log = el('input', { type: 'checkbox' });
     const ends = [el('span'), el('span')];
+    const showEnds = () => ends.forEach((end, side) => { end.textContent = short(range[side], 3); });
     const show = () => {
       const own = state.values[name];
+      // A value that was given otherwise may lie beyond.
+      const reached = [Math.min(range[0], own), Math.max(range[1], own)];
+      if ((reached[0] < range[0] || reached[1] > range[1]) && (!range[2] || reached[0] > 0)) {
+        range = [...reached, range[2]];
+        showEnds();
+      }
       slider.value = Number.isFinite(own) ? toPlace(range, own) : 0;
       slider.setAttribute('aria-valuetext', `${own} ${parameter.unit}`.trim());
       if (document.activeElement !== value) value.value = Number.isFinite(own) ? String(own) : '';
     };
     const showRange = () => {
       [low.value, high.value] = [short(range[0], 6), short(range[1], 6)];
-      ends.forEach((end, side) => { end.textContent = short(range[side], 3); });
+      showEnds();
       log.checked = range[2];
       show();
     };

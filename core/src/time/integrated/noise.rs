@@ -7,7 +7,8 @@
 //! |d(dv)| = |M^-1 e (phi(l + u) - phi(l)) / g'| |dq|                                                          (1)
 //! ```
 //!
-//! in a tangent column `(dq, dv)`. No shorter step leaves less.
+//! in a tangent column `(dq, dv)`. No shorter step leaves less. Where the gap hardly moves that is no rounding any more: the derivative itself is
+//! not known then, and the step fails.
 
 use crate::law::is_unbounded;
 
@@ -15,6 +16,8 @@ use super::engine::{Engine, Trial};
 
 /// So many times (1) is what an error of the tangent may be rounding.
 const SEVERAL: f64 = 8.0;
+/// More than this is not taken for rounding.
+const LARGEST: f64 = 1e-7;
 
 impl<const S: usize> Engine<S> {
     /// (1) of the levels that the trial begins or ends on, relative to the base frequency.
@@ -52,6 +55,7 @@ impl<const S: usize> Engine<S> {
                 most = pushed.fold(most, |most, x| most.max(x.abs()));
             }
         }
-        SEVERAL * most / self.field.base().abs()
+        let noise = SEVERAL * most / self.field.base().abs();
+        if noise <= LARGEST { noise } else { 0.0 }
     }
 }
