@@ -179,7 +179,13 @@ pub fn run(
             diagram = found.diagram;
         }
     }
-    let sensitivities = sensitive::find(options, &branches, cancel, &mut seen)?;
+    // What was computed is not lost where something has no derivatives.
+    let sensitivities = sensitive::find(options, &branches, cancel, &mut seen);
+    let all_derived = sensitivities.is_ok();
+    let sensitivities = sensitivities.unwrap_or_else(|error| {
+        warnings.push(format!("no sensitivities: {}", chain(&error)));
+        Vec::new()
+    });
     let reduction = match &reduced {
         Some(reduced) => Some(reduced.of(&branches)?),
         None => None,
@@ -203,6 +209,7 @@ pub fn run(
             + &sensitive::summary(&branches, &sensitivities),
         complete: is_complete(options, &branches[0], &diagram, cancel, &mut warnings)
             && all_drawn
+            && all_derived
             && all_panels,
         warnings,
     })

@@ -138,17 +138,19 @@ fn replace(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> io::R
     filled
 }
 
-/// A new file in the same folder.
+/// A new file in the same folder. One of its name may be left of a process that was killed and had the same number.
 fn beside(path: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let folder = path.parent().unwrap_or(Path::new(""));
-    let number = COUNT.fetch_add(1, Ordering::Relaxed);
-    let part = folder.join(format!(".hertzian-{}-{number}.part", std::process::id()));
-    let file = OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(&part)?;
-    Ok((part, file))
+    loop {
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let part = folder.join(format!(".hertzian-{}-{number}.part", std::process::id()));
+        let opened = OpenOptions::new().write(true).create_new(true).open(&part);
+        match opened {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            opened => return Ok((part, opened?)),
+        }
+    }
 }
 
 /// Whether a folder takes no new files.
@@ -178,6 +180,21 @@ mod tests {
             .collect();
         names.sort();
         names
+    }
+
+    /// Parts that a killed process has left, whose number this one has now.
+    #[test]
+    fn what_was_left_is_in_nobodys_way() {
+        let folder = folder("left");
+        let left = |number: usize| format!(".hertzian-{}-{number}.part", std::process::id());
+        for number in 0..100 {
+            fs::write(folder.join(left(number)), "half").expect("a file");
+        }
+        let path = folder.join("a");
+        write(&path, "whole").expect("written");
+        assert_eq!(fs::read(&path).expect("a file"), b"whole");
+        assert_eq!(names(&folder).len(), 101);
+        fs::remove_dir_all(folder).expect("removed");
     }
 
     /// As where the disk is full: a part is written, then no more.

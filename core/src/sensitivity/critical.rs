@@ -13,7 +13,9 @@
 //! [ v^T  0 ] [ g  ] = [   0  ],        g = 0 by the symmetry,                                                 (2)
 //! ```
 //!
-//! and the part of `s'` along `v` that is missing does not change the multiplier: by the symmetry it is an even function of it. At a fold
+//! and the part of `s'` along `v` that is missing does not change the multiplier: by the symmetry it is an even function of it. A parameter that
+//! breaks the symmetry, as a load does where there was none, has `g` not zero: beside its value no branches cross, and the place has no
+//! derivative by it. At a fold
 //! (2) with `F_p + F_lambda dlambda/dp` for `F_p` gives the motion of the orbit but for its part `c` along `v`, which keeps the multiplier at one:
 //!
 //! ```text
@@ -45,6 +47,8 @@ const NEAR: f64 = 1e-7;
 const FARTHEST: f64 = 1e-2;
 /// A multiplier is taken to be the one that crosses within this distance of where it should.
 const BESIDE: f64 = 0.1;
+/// A parameter leaves a symmetry as it is if `w^T F_p` is no larger part of `F_p`.
+const LEAVES: f64 = 1e-6;
 
 /// What crosses the unit circle, and where.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -140,7 +144,14 @@ impl Critical {
         })
     }
 
-    /// `Re(mu'/mu)` by one of the variables, and its error.
+    /// Whether one of the variables breaks the symmetry: `g` of (2) is not zero.
+    fn is_unfolded_by(&self, index: usize) -> bool {
+        let by = &self.evaluated.by[index];
+        let null = self.null.as_ref();
+        null.is_some_and(|(left, _)| left.dot(by).abs() > LEAVES * by.norm())
+    }
+
+    /// `Re(mu'/mu)` by one of the variables, and its error; no numbers where it breaks the symmetry.
     fn slope(
         &self,
         cycle: &mut Cycle,
@@ -148,6 +159,9 @@ impl Critical {
         variables: &[Variable],
         index: usize,
     ) -> Result<(f64, f64), SensitivityError> {
+        if self.is_unfolded_by(index) {
+            return Ok((f64::NAN, f64::NAN));
+        }
         let jacobian = &self.evaluated.jacobian;
         let right = -&self.evaluated.by[index];
         let mut weights = vec![0.0; variables.len()];

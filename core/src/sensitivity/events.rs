@@ -52,7 +52,14 @@ impl Sensitive<'_> {
             (kind, _) => return Err(SensitivityError::Kind { kind }.into()),
         };
         let mut told = self.told(0.0);
-        told.place = place;
+        for (name, place) in told.variables.iter().zip(&place) {
+            if place.is_some_and(|place| place.value.is_nan()) {
+                let why = "it breaks the symmetry: beside its value no branches cross";
+                told.missing
+                    .push(Missing::new(format!("place by {name}"), why));
+            }
+        }
+        told.place = place.into_iter().map(known).collect();
         told.kind = Some(event.kind);
         if rows.is_empty() {
             return Ok(told);
@@ -171,6 +178,11 @@ impl Sensitive<'_> {
         }
         Ok(())
     }
+}
+
+/// A derivative that is a number.
+fn known(place: Option<Derivative>) -> Option<Derivative> {
+    place.filter(|place| !place.value.is_nan())
 }
 
 impl Sensitivities {

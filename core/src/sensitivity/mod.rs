@@ -70,7 +70,8 @@ pub struct Sensitivities {
     pub varied: String,
     /// The kind of an event; `None` of any other orbit.
     pub kind: Option<EventKind>,
-    /// Derivatives of the place of an event, a value of what is varied, by each of the variables: none by that itself. Empty of any other orbit.
+    /// Derivatives of the place of an event, a value of what is varied, by each of the variables: none by that itself, and none of a broken
+    /// symmetry by what breaks it (`missing` says so). Empty of any other orbit.
     pub place: Vec<Option<Derivative>>,
     /// What is read off the orbit, at a fixed value of what is varied, multipliers as `multiplier_1_re` and `multiplier_1_im`, largest
     /// modulus first. Empty at a fold: there these derivatives are unbounded, as the inverse of the distance along the branch.

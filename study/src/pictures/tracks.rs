@@ -75,7 +75,7 @@ impl Plane<'_> {
                     return tracks;
                 }
                 // Where nothing is found at one value there may be at another.
-                let _ = self.along(axis, low + part * (high - low), &mut tracks);
+                let _ = self.along(axis, (1.0 - part) * low + part * high, &mut tracks);
             }
         }
         tracks

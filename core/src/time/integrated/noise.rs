@@ -17,7 +17,7 @@ use super::engine::{Engine, Trial};
 /// So many times (1) is what an error of the tangent may be rounding.
 const SEVERAL: f64 = 8.0;
 /// More than this is not taken for rounding.
-const LARGEST: f64 = 1e-7;
+const LARGEST: f64 = 1e-4;
 
 impl<const S: usize> Engine<S> {
     /// (1) of the levels that the trial begins or ends on, relative to the base frequency.

@@ -3,7 +3,7 @@
 //! Places are exact values of `exact.json` and `many.json` (independent computations in 80 and 128 bits).
 
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Point, Shooting, System};
-use hertzian_tests::{OneSidedLinear, TwoMasses};
+use hertzian_tests::{Continuous, OneSidedLinear, TwoMasses};
 
 use super::{Make, assert_near, names, richardson, unloaded};
 
@@ -166,6 +166,36 @@ fn broken_symmetry_of_figure_2a() {
         };
         case.compare(&[0.01, 1.5, 0.1], &unloaded);
     }
+}
+
+/// A load is none of the parameters that a symmetry depends on smoothly: with it branches cross no more.
+#[test]
+fn a_broken_symmetry_has_no_derivative_by_what_breaks_it() {
+    let model = Continuous {
+        zeta: 0.01,
+        alpha: 1.5,
+        load: 0.0,
+        drive: 0.1,
+    };
+    let request = FrequencyResponse::of(&model).by(Shooting::new().tolerance(1e-13));
+    let branch = request.from(0.4).to(0.405).run().unwrap();
+    let mut events = branch.events.iter();
+    let event = events.find(|event| event.kind == EventKind::SymmetryBreaking);
+    let event = event.expect("a broken symmetry");
+    assert!((event.point.value - 0.402_310_407_656_194).abs() < 1e-9);
+    let found = branch.event_sensitivities_of(event, &[]).unwrap();
+    let place = |name: &str| {
+        let index = found.variables.iter().position(|own| own == name);
+        found.place[index.expect("a variable")]
+    };
+    assert_eq!(place("load"), None);
+    assert!(place("zeta").is_some() && place("alpha").is_some() && place("drive").is_some());
+    assert!(
+        found
+            .missing
+            .iter()
+            .any(|missing| missing.what == "place by load")
+    );
 }
 
 #[test]
