@@ -179,13 +179,9 @@ pub fn run(
             diagram = found.diagram;
         }
     }
-    // What was computed is not lost where something has no derivatives.
-    let sensitivities = sensitive::find(options, &branches, cancel, &mut seen);
-    let all_derived = sensitivities.is_ok();
-    let sensitivities = sensitivities.unwrap_or_else(|error| {
-        warnings.push(format!("no sensitivities: {}", chain(&error)));
-        Vec::new()
-    });
+    let (sensitivities, underived) = sensitive::found(options, &branches, cancel, &mut seen);
+    let all_derived = underived.is_none();
+    warnings.extend(underived);
     let reduction = match &reduced {
         Some(reduced) => Some(reduced.of(&branches)?),
         None => None,

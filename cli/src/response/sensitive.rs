@@ -81,7 +81,7 @@ pub fn check(options: &Options, model: &dyn System) -> Result<(), Failure> {
 ///
 /// # Errors
 /// If what is asked for has no derivatives at all.
-pub fn find(
+fn find(
     options: &Options,
     branches: &[Branch],
     cancel: &Cancel,
@@ -111,6 +111,22 @@ pub fn find(
         }
     }
     Ok(all)
+}
+
+/// The same, or why there is none of it: what was computed is not lost for that.
+pub fn found(
+    options: &Options,
+    branches: &[Branch],
+    cancel: &Cancel,
+    seen: &mut Seen<'_>,
+) -> (Vec<At>, Option<String>) {
+    match find(options, branches, cancel, seen) {
+        Ok(found) => (found, None),
+        Err(error) => (
+            Vec::new(),
+            Some(format!("no sensitivities: {}", chain(&error))),
+        ),
+    }
 }
 
 fn of_point(branch: &Branch, point: &Point, wanted: &[Wanted]) -> Result<Sensitivities, Error> {
