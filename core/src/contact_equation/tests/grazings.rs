@@ -151,7 +151,8 @@ crate::oscillator! {
     }
 }
 
-/// Between the two points around a doubling switches of both stops pass each other. Its place is that of shooting at 1e-12.
+/// Between the two points around a doubling switches of both stops pass each other. Its place is that of matrix exponentials between roots of
+/// `brentq`, with the secant method for the multiplier (scipy 1.17): 0.42096798671794.
 #[test]
 fn an_event_beside_a_change_of_order_is_found() {
     for [from, to] in [[0.15, 0.8], [0.8, 0.15]] {
