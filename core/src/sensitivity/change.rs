@@ -7,7 +7,7 @@
 //!
 //! `M` is the exact derivative of the discrete motion, and the direction is the exact tangent, so that (1) takes one derivative of what is
 //! known, along a straight line. It is differenced (2): second derivatives of laws at fixed times are not integrable for exponents below
-//! one, while `M` is smooth as long as the same levels are crossed in the same order, which is looked at. The error is what the last step of
+//! one, while `M` is smooth as long as the same levels are crossed in the same order; looked at is how many are. The error is what the last step of
 //! (2) changed, as Ridders has it; where steps become so short that it is noise, it grows again, and the best is taken.
 //!
 //! Source: Ridders (1982), Accurate computation of F'(x) and F'(x) F''(x), Adv. Eng. Softw. 4.
