@@ -41,19 +41,20 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let basins = Basin::of(&model).omega(1.0).grid(grid).threads(2).run()?;
 
     let mut classes = Vec::new();
-    let mut markers = Vec::new();
+    let mut letters = Vec::new();
     for (index, attractor) in basins.attractors.iter().enumerate() {
         let share = basins.count(Fate::Periodic(index)) as f64 / (CELLS * CELLS) as f64;
         // Two of them may have one period.
-        let letter = char::from(b'a' + index as u8);
-        let name = format!("{letter}, period {}", attractor.period);
-        let label = format!("{name}: {:.1} %", 100.0 * share);
+        let letter = char::from(b'a' + index as u8).to_string();
+        let label = format!(
+            "{letter}, period {}: {:.1} %",
+            attractor.period,
+            100.0 * share
+        );
         println!("{label} of the starts");
         let points = attractor.points.iter().map(|state| [state[0], state[1]]);
-        markers.push(Series {
-            label: format!("points of {name}"),
-            points: points.collect(),
-        });
+        let points: Vec<[f64; 2]> = points.collect();
+        letters.push(Series::new(letter, points));
         classes.push((label, Colour::Class(index)));
     }
     let others = classes.len();
@@ -62,19 +63,21 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         Fate::Periodic(index) => *index,
         _ => others,
     };
-    let mut chart = Chart::new("Where motions settle: ζ = 0.032, W = 1, A = 1, ω = 1")
-        .x("initial x / static deflection")
-        .y("initial rate of x / (static deflection × linear frequency)")
-        .raster(Raster {
-            x: sides.0,
-            y: sides.1,
-            columns: CELLS,
-            cells: basins.fates.iter().map(|fate| class(fate) as u8).collect(),
-            classes,
-        });
-    for points in markers {
-        chart = chart.markers(points);
+    let mut chart =
+        Chart::new("Contact that opens, where motions settle: ζ = 0.032, W = 1, A = 1, ω = 1")
+            .x("initial x / static deflection")
+            .y("initial rate of x / (static deflection × linear frequency)")
+            .raster(Raster {
+                x: sides.0,
+                y: sides.1,
+                columns: CELLS,
+                cells: basins.fates.iter().map(|fate| class(fate) as u8).collect(),
+                classes,
+            });
+    for points in letters {
+        chart = chart.letters(points);
     }
+    let chart = chart.remark("letters: the orbit itself, once in each period of the excitation");
     chart.write("basin.svg")?;
     println!("written basin.svg");
     Ok(())

@@ -57,11 +57,11 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Volumes of states shrink by damping in contact alone.
     println!("their sum {:.4}", exponents.sum.value);
 
-    Chart::new("Chaos: ζ = 0.032, W = 1, A = 1.785, ω = 1")
-        .x("x at the beginning of each period")
-        .y("rate of x")
+    Chart::new("Chaos of a contact that opens: ζ = 0.032, W = 1, A = 1.785, ω = 1")
+        .x("x at the beginning of each period / static deflection")
+        .y("rate of x / (static deflection × linear frequency)")
         .cloud(Series {
-            label: "20000 periods".to_owned(),
+            label: "state, once in each of 20000 periods".to_owned(),
             points,
         })
         .write("chaos.svg")?;

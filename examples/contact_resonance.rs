@@ -10,8 +10,8 @@
 //! The chapter "A measured contact" of the book says what agrees with what they describe, and what could not be compared.
 
 use hertzian::backbone::FreeOscillation;
-use hertzian::chart::{Chart, Curve, Series};
-use hertzian::{Branch, Error, FrequencyResponse};
+use hertzian::chart::{Chart, Curve, Note, Series, event_markers};
+use hertzian::{Branch, Error, Event, FrequencyResponse};
 
 hertzian::oscillator! {
     Ball(q) {
@@ -46,7 +46,7 @@ pub fn main() -> Result<(), Error> {
         let model = Ball { zeta: ZETA, sigma };
         let branch = FrequencyResponse::of(&model).from(1.1).to(0.75).run()?;
         describe(sigma, &branch);
-        let place = |fold: &hertzian::Event| [fold.point.value, fold.point.peak_to_peak()];
+        let place = |fold: &Event| (fold.kind, [fold.point.value, fold.point.peak_to_peak()]);
         folds.extend(branch.folds().map(place));
         chart = chart.curve(Curve {
             label: format!("σ = {sigma}"),
@@ -54,20 +54,16 @@ pub fn main() -> Result<(), Error> {
         });
     }
     let touch = free_oscillation(TOUCH)?.last().copied();
-    if let Some([omega, size]) = touch {
+    if let Some(point @ [omega, size]) = touch {
+        let label = "leaves contact".to_owned();
+        chart = chart.note(Note { label, point });
         println!("free oscillation leaves contact at {omega:.6}, peak-to-peak {size:.6}");
     }
     let free = Series {
         label: "free oscillation".to_owned(),
         points: free_oscillation(3.0)?,
     };
-    let markers = |label: &str, points| Series {
-        label: label.to_owned(),
-        points,
-    };
-    let touch = touch.into_iter().collect();
-    let chart = chart.reference(free).markers(markers("fold", folds));
-    let chart = chart.markers(markers("free oscillation leaves contact", touch));
+    let chart = event_markers(folds).fold(chart.reference(free), Chart::marks);
     chart.write("contact_resonance.svg")?;
     println!("written contact_resonance.svg");
     Ok(())

@@ -4,8 +4,8 @@
 //! the preload. Where orbits begin to touch it the branch has a corner, and turns there without a fold. To make it your own, change the
 //! preload, the stiffness, or add a second stop.
 
-use hertzian::chart::{Chart, Curve, Series};
-use hertzian::{Error, EventKind, FrequencyResponse};
+use hertzian::chart::{Chart, Curve, event_markers};
+use hertzian::{Error, FrequencyResponse};
 
 hertzian::oscillator! {
     /// Oscillator with a preloaded stop
@@ -29,12 +29,12 @@ hertzian::oscillator! {
     }
 }
 
-/// Traces a curve for each preload, and marks folds and where the stop is touched first.
+/// Traces a curve for each preload, and marks where the branch folds and where the stop is touched first.
 pub fn main() -> Result<(), Error> {
     let mut chart = Chart::new("A stop at a distance of 1, stiffness 2, damping ratio 2 %")
         .x("excitation frequency ω")
         .y("peak-to-peak of x");
-    let (mut folds, mut touches) = (Vec::new(), Vec::new());
+    let mut marks = Vec::new();
     for preload in [0.0, 0.05, 0.2] {
         let model = PreloadedStop {
             zeta: 0.02,
@@ -52,23 +52,15 @@ pub fn main() -> Result<(), Error> {
         for event in &branch.events {
             println!("  {event}");
             let place = [event.point.value, event.point.peak_to_peak()];
-            match event.kind {
-                EventKind::Fold => folds.push(place),
-                EventKind::Grazing { .. } => touches.push(place),
-                _ => {}
-            }
+            marks.push((event.kind, place));
         }
         chart = chart.curve(Curve {
             label: format!("preload {preload}"),
             runs: branch.runs(),
         });
     }
-    let markers = |label: &str, points| Series {
-        label: label.to_owned(),
-        points,
-    };
-    let chart = chart.markers(markers("fold", folds));
-    let chart = chart.markers(markers("the stop is touched first", touches));
+    // Where grazing is marked the stop is touched first.
+    let chart = event_markers(marks).fold(chart, Chart::marks);
     chart.write("preloaded_stop.svg")?;
     println!("written preloaded_stop.svg");
     Ok(())

@@ -3,7 +3,7 @@
 //! The contact opens where the ball moves away, so that the resonance leans to lower frequencies. To make it your own, change the
 //! equation, its parameters and the range of frequencies. Figure 5b of Wang, Zhang, Ying and Pang (2021), Appl. Sci. 11, 7722.
 
-use hertzian::chart::Series;
+use hertzian::chart::{Chart, event_markers};
 use hertzian::{Branch, Error, EventKind, FrequencyResponse, Point};
 
 hertzian::oscillator! {
@@ -35,12 +35,12 @@ pub fn main() -> Result<(), Error> {
     let branch = FrequencyResponse::of(&model).from(0.6).to(1.6).run()?;
     describe(&branch);
 
-    let lost = Series {
-        label: "contact is lost".to_owned(),
-        points: contact_is_lost(&branch.points),
-    };
-    let chart = branch.chart().markers(lost);
-    let chart = chart.title("One-sided contact, force as gap^1.5: ζ = 0.032, W = 1, A = 0.1");
+    // Contact is lost beyond orbits that graze: whose smallest penetration is zero.
+    let grazing = EventKind::Grazing { turns: false };
+    let lost = contact_is_lost(&branch.points).into_iter();
+    let marks = event_markers(lost.map(|place| (grazing, place)));
+    let chart = marks.fold(branch.chart(), Chart::marks);
+    let chart = chart.title("Ball on a plane, force as gap^1.5: ζ = 0.032, W = 1, A = 0.1");
     chart.write("response.svg")?;
     println!("written    response.svg");
     Ok(())

@@ -138,6 +138,11 @@ fn rows(basins: &Basins, columns: usize) -> Vec<Vec<String>> {
 
 /// What is said of a periodic orbit; those of one period are told apart by letters.
 pub fn name(attractors: &[Attractor], index: usize) -> String {
+    format!("period {}", numbered(attractors, index))
+}
+
+/// The period with the letter.
+fn numbered(attractors: &[Attractor], index: usize) -> String {
     let period = attractors[index].period;
     let same = |range: &[Attractor]| range.iter().filter(|a| a.period == period).count();
     let letter = if same(attractors) > 1 {
@@ -148,7 +153,7 @@ pub fn name(attractors: &[Attractor], index: usize) -> String {
     } else {
         String::new()
     };
-    format!("period {period}{letter}")
+    format!("{period}{letter}")
 }
 
 fn chart(task: &Task<'_>, grid: &Grid, basins: &Basins) -> Result<Chart, Failure> {
@@ -180,15 +185,11 @@ fn chart(task: &Task<'_>, grid: &Grid, basins: &Basins) -> Result<Chart, Failure
         });
     for (index, attractor) in basins.attractors.iter().enumerate().take(MARKED) {
         let entry = |state: &Vec<f64>| [state[columns.entry], state[rows.entry]];
-        let inside = |[x, v]: &[f64; 2]| {
-            (columns.from..=columns.to).contains(x) && (rows.from..=rows.to).contains(v)
-        };
-        chart = chart.markers(Series {
-            label: format!("points of {}", name(&basins.attractors, index)),
-            points: attractor.points.iter().map(entry).filter(inside).collect(),
-        });
+        let points: Vec<[f64; 2]> = attractor.points.iter().map(entry).collect();
+        chart = chart.letters(Series::new(numbered(&basins.attractors, index), points));
     }
-    Ok(chart)
+    Ok(chart
+        .remark("numbers: the orbit of that period itself, once in each period of the excitation"))
 }
 
 fn summary(basins: &Basins) -> String {

@@ -1,6 +1,6 @@
 //! The pictures: errors by harmonics and by time, both axes logarithmic.
 
-use hertzian::chart::{Chart, Page, Scale, Series};
+use hertzian::chart::{Chart, Note, Page, Scale, Series};
 use hertzian::stability::Method;
 
 use super::study::{METHODS, Measured};
@@ -17,10 +17,13 @@ pub fn by_harmonics(all: &[(&str, Vec<Measured>)]) -> Page {
         if let [(least, error), .., (most, _)] = points[..] {
             for order in [2, 4] {
                 let end = error * (most / least).powi(-order);
-                chart = chart.reference(Series {
-                    label: format!("order {order}"),
-                    points: vec![[least, error], [most, end]],
-                });
+                // A third of the way along, where the name finds room before curves part.
+                let at = least * (most / least).powf(0.35);
+                let point = [at, error * (at / least).powi(-order)];
+                let label = format!("order {order}");
+                chart = chart
+                    .reference(Series::new("", [[least, error], [most, end]]))
+                    .text(Note { label, point });
             }
         }
         page.chart(chart)
@@ -32,25 +35,22 @@ pub fn by_harmonics(all: &[(&str, Vec<Measured>)]) -> Page {
 pub fn by_time(all: &[(&str, Vec<Measured>)]) -> Page {
     let page = |page: Page, (name, measured): &(&str, Vec<Measured>)| {
         let chart = chart(name, measured, |m| [m.microseconds, m.corrected]);
-        page.chart(chart.x("microseconds, the correction left out"))
+        let chart = chart.x("time of the multipliers, microseconds");
+        page.chart(chart.remark(
+            "errors after the orbit is corrected for what its harmonics leave out; times are without that",
+        ))
     };
     all.iter().fold(Page::new(2), page)
 }
 
 fn chart(name: &str, measured: &[Measured], point: impl Fn(&Measured) -> [f64; 2]) -> Chart {
-    let mut chart = Chart::new(name)
+    let mut chart = Chart::new(format!("Contact oscillator, {name}"))
         .y("largest error of a multiplier")
         .scales(Scale::Logarithmic, Scale::Logarithmic);
     for (method, _) in METHODS {
         let of_method = measured.iter().filter(|m| m.method == method);
         let points: Vec<_> = of_method.map(&point).collect();
-        let label = method.to_string();
-        chart = chart
-            .trace(Series {
-                label: String::new(),
-                points: points.clone(),
-            })
-            .markers(Series { label, points });
+        chart = chart.joined(Series::new(method.to_string(), points));
     }
     chart
 }

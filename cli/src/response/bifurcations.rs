@@ -240,7 +240,7 @@ impl Found {
             let points: Vec<_> = of_kind.map(|special| special.values).collect();
             if !points.is_empty() {
                 let label = kind.to_owned();
-                chart = chart.markers(Series { label, points });
+                chart = chart.marks(Series { label, points });
             }
         }
         Ok(chart)

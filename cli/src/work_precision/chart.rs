@@ -10,6 +10,9 @@ use super::problem::Problem;
 
 /// Errors below this are drawn as this: closed forms reach rounding.
 const FLOOR: f64 = 1e-16;
+/// What stands at settings that failed, and what that is.
+const FAILED: &str = "×";
+const OF_FAILED: &str = "failed: it finds other folds than there are, or does not end";
 
 /// The chart of one quantity.
 pub fn chart(
@@ -27,35 +30,31 @@ pub fn chart(
         Some([time, error(one)?.max(FLOOR)])
     };
     for family in Family::ALL {
-        let right = measured
-            .iter()
-            .filter(|one| one.family == family && one.failure.is_none());
-        let points: Vec<[f64; 2]> = right.filter_map(place).collect();
-        // Samples and harmonics are swept both, and points that differ in both are on no line.
-        let line = if family.is_sampled() {
-            Vec::new()
-        } else {
-            points.clone()
-        };
-        chart = chart
-            .trace(Series {
-                label: String::new(),
-                points: line,
-            })
-            .markers(Series {
-                label: family.name().to_owned(),
-                points,
-            });
+        let own: Vec<&Measured> = measured.iter().filter(|one| one.family == family).collect();
+        // Of samples and harmonics both are swept: a line for each number of samples.
+        let lines = own.chunk_by(|a, b| a.setting.samples() == b.setting.samples());
+        let points = lines.flat_map(|line| {
+            let right = line.iter().filter(|one| one.failure.is_none());
+            right.filter_map(|one| place(one)).chain([[f64::NAN; 2]])
+        });
+        chart = chart.joined(Series::new(family.name(), points.collect::<Vec<_>>()));
     }
     let failed = measured.iter().filter(|one| one.failure.is_some());
-    chart.markers(Series {
-        label: "any of them, failed".to_owned(),
-        points: failed.filter_map(place).collect(),
-    })
+    let failed: Vec<[f64; 2]> = failed.filter_map(place).collect();
+    if !failed.is_empty() {
+        chart = chart.remark(format!("{FAILED}: any method, {OF_FAILED}"));
+    }
+    chart.letters(Series::new(FAILED, failed))
 }
 
 /// The same with the points of other programs, failures as well.
 pub fn with_peers(chart: Chart, peers: &[Peer], error: impl Fn(&Peer) -> Option<f64>) -> Chart {
+    let shown = |peer: &&Peer| error(peer).is_some() && peer.failure.is_some();
+    let chart = if peers.iter().any(|peer| shown(&peer)) {
+        chart.remark(format!("other programs, {OF_FAILED}"))
+    } else {
+        chart
+    };
     peers.iter().fold(chart, |chart, peer| {
         let Some(error) = error(peer) else {
             return chart;
@@ -84,15 +83,7 @@ pub fn multipliers(problem: &Problem, answers: &[Answer]) -> Chart {
         let points: Vec<[f64; 2]> = right
             .map(|one| [1e3 * one.seconds, one.error.max(FLOOR)])
             .collect();
-        chart = chart
-            .trace(Series {
-                label: String::new(),
-                points: points.clone(),
-            })
-            .markers(Series {
-                label: name.to_owned(),
-                points,
-            });
+        chart = chart.joined(Series::new(name, points));
     }
     chart
 }

@@ -104,6 +104,14 @@ pub enum Setting {
 }
 
 impl Setting {
+    /// Samples of a period, if there are any.
+    pub fn samples(self) -> Option<usize> {
+        match self {
+            Self::Samples { samples, .. } => Some(samples),
+            Self::Harmonics(_) | Self::Tolerance(_) => None,
+        }
+    }
+
     /// The tolerance, if that is swept; a small one otherwise.
     fn tolerance(self) -> f64 {
         match self {

@@ -145,8 +145,8 @@ fn failed(path: &Path) -> impl FnOnce(io::Error) -> Failure {
     move |error| Failure::File(path, error)
 }
 
-/// The charts of a problem.
-fn picture(section: &Section) -> Page {
+/// The charts of a problem, each below the last.
+pub fn picture(section: &Section) -> Page {
     let Section {
         problem,
         reference,
@@ -156,11 +156,11 @@ fn picture(section: &Section) -> Page {
     } = section;
     let mut page = Page::new(1);
     if !reference.folds.is_empty() {
-        let label = "error of the fold of largest amplitude, ω";
+        let label = "error of ω at the fold of largest amplitude";
         let fold = chart::chart(problem, measured, label, |one| one.fold);
         page = page.chart(chart::with_peers(fold, peers, |peer| peer.fold));
     }
-    let label = "relative error of peak-to-peak";
+    let label = "relative error of peak-to-peak of one orbit";
     let size = chart::chart(problem, measured, label, |one| one.peak_to_peak);
     page.chart(chart::with_peers(size, peers, |peer| peer.peak_to_peak))
         .chart(chart::multipliers(problem, answers))

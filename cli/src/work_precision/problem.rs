@@ -57,7 +57,7 @@ fn stiff_stop() -> Problem {
     let compiled = || Box::new(StiffStop { drive: 0.1 });
     Problem {
         id: "stiff-stop",
-        title: "two masses, a stop 100 times as stiff",
+        title: "two masses, one with a stop 100 times as stiff as its spring",
         compiled: compiled(),
         interpreted: match Declaration::parse(STIFF_STOP) {
             Ok(model) => Box::new(model),
@@ -88,7 +88,7 @@ pub fn all() -> Vec<Problem> {
     vec![
         problem(Spring {
             id: "one-sided-1",
-            title: "one-sided, α = 1 (Fig. 5a)",
+            title: "one-sided contact, α = 1 (Wang et al. 2021, Fig. 5a)",
             alpha: 1.0,
             one_sided: true,
             range: [0.6, 1.4],
@@ -97,7 +97,7 @@ pub fn all() -> Vec<Problem> {
         }),
         problem(Spring {
             id: "one-sided-1.5",
-            title: "one-sided, α = 1.5 (Fig. 5b)",
+            title: "one-sided contact, α = 1.5 (Wang et al. 2021, Fig. 5b)",
             alpha: 1.5,
             one_sided: true,
             range: [0.6, 1.6],
@@ -106,7 +106,7 @@ pub fn all() -> Vec<Problem> {
         }),
         problem(Spring {
             id: "one-sided-0.6",
-            title: "one-sided, α = 0.6 (Fig. 5c)",
+            title: "one-sided contact, α = 0.6 (Wang et al. 2021, Fig. 5c)",
             alpha: 0.6,
             one_sided: true,
             range: [0.5, 1.2],
@@ -120,7 +120,7 @@ pub fn all() -> Vec<Problem> {
         }),
         problem(Spring {
             id: "continuous-1.5",
-            title: "continuous, α = 1.5 (Fig. 2a)",
+            title: "spring on both sides, α = 1.5 (Wang et al. 2021, Fig. 2a)",
             alpha: 1.5,
             one_sided: false,
             range: [0.5, 1.7],

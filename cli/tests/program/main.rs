@@ -3,6 +3,7 @@
 mod attractors;
 mod cancels;
 mod commands;
+mod drawn_again;
 #[cfg(feature = "explore")]
 mod explore;
 mod files;

@@ -99,6 +99,18 @@ impl Range {
         Some(position.clamp(-1e6, 1e6))
     }
 
+    /// A value divided by a power of ten, with as many digits as tell it from what is a thousandth of the range beside it.
+    pub(super) fn written(&self, value: f64, power: i32) -> String {
+        let part = 1e-3 * (self.high - self.low);
+        let beside = match self.scale {
+            Scale::Linear => part,
+            Scale::Logarithmic | Scale::Decibel => value.abs() * (10_f64.powf(part) - 1.0),
+        };
+        let unit = 10_f64.powi(power);
+        let decimals = (-(beside / unit).log10().floor()).clamp(0.0, 17.0) as usize;
+        format!("{:.decimals$}", value / unit).replace('-', "−")
+    }
+
     /// At most about `count` labelled ticks, and minor ones between them.
     pub(super) fn ticks(&self, count: usize, powers: Powers) -> Ticks {
         let by_value = |value: f64| self.position(value);
@@ -257,6 +269,16 @@ mod tests {
         // Zero has no place there: only the other end is shown.
         let half = Range::between(Scale::Logarithmic, [0.0, 10.0]);
         assert!((half.position(10.0).unwrap() - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn values_have_the_digits_that_a_chart_shows() {
+        let linear = Range::between(Scale::Linear, [0.0, 2.5]);
+        assert_eq!(linear.written(-1.23456, 0), "−1.235");
+        assert_eq!(linear.written(1.23456, -3), "1235");
+        let decades = Range::between(Scale::Logarithmic, [1e-2, 1e2]);
+        assert_eq!(decades.written(0.0123456, 0), "0.0123");
+        assert_eq!(decades.written(98.7654, 0), "98.8");
     }
 
     #[test]

@@ -6,25 +6,30 @@ use super::band;
 use super::bars;
 use super::cloud::{self, Dots};
 use super::drawing::Plot;
-use super::legend::{Entry, Sample};
+use super::letters::{self, Letters};
 use super::mark::{self, Kind, Merged};
 use super::note::{self, Named, Placed};
 use super::polyline::polylines;
-use super::shape::{Shape, draw_shape};
-use super::svg::{BAND, INK, Pen, Pixel, Rectangle, Svg, pen};
+use super::shape::{Shape, draw_filled, draw_joined, draw_open};
+use super::short::{self, Piece};
+use super::style::{Styles, are_told_apart, curve_pen, reference_pen, trace_pen};
+use super::svg::{Pen, Pixel, Rectangle, Svg, pen};
 use super::{Chart, Line, Note, Series};
 
-/// Dark blue, vermilion, sky blue, black, green, orange, purple: the first four differ in lightness too.
-const COLOURS: [&str; 7] = [
-    "#0b4f8a", "#d55e00", "#56b4e9", "#000000", "#007a5a", "#e69f00", "#aa4f8c",
-];
 /// By how much the white line behind one upon cells is wider than it.
 const HALO: f64 = 2.8;
-const REFERENCE: Pen = pen("#666666", 1.4, "12 4 2 4");
+
+/// Points with the line through them.
+pub(super) struct Joined {
+    pub(super) pen: Pen,
+    lines: Vec<Vec<Pixel>>,
+    pub(super) shape: Shape,
+    pub(super) points: Vec<Pixel>,
+}
 
 /// What is inside the frame, in pixels.
 pub(super) struct Contents {
-    references: Vec<Vec<Vec<Pixel>>>,
+    pub(super) references: Vec<(Pen, Vec<Vec<Pixel>>)>,
     areas: Vec<(&'static str, Vec<Vec<Pixel>>)>,
     bands: Vec<Vec<Vec<Pixel>>>,
     bars: Vec<bars::Drawn>,
@@ -32,8 +37,11 @@ pub(super) struct Contents {
     /// Small shapes along curves, with their colour.
     along: Vec<(&'static str, Shape, Vec<Pixel>)>,
     /// Of each kind of markers, in the order of the chart.
-    markers: Vec<(Shape, Vec<Pixel>)>,
-    traces: Vec<(Pen, Vec<Vec<Pixel>>)>,
+    pub(super) markers: Vec<(Shape, Vec<Pixel>)>,
+    pub(super) traces: Vec<(Pen, Vec<Vec<Pixel>>)>,
+    pub(super) joined: Vec<Joined>,
+    /// Points that are letters.
+    pub(super) letters: Vec<Letters>,
     clouds: Vec<Dots>,
     notes: Vec<Placed>,
     /// Everything is covered by coloured cells.
@@ -45,7 +53,6 @@ impl Contents {
         let lines = |points: &[[f64; 2]]| {
             polylines(points.iter().map(|&point| plot.pixel(point)), &plot.frame)
         };
-        let references = chart.references.iter();
         let styles = Styles::of(chart);
         let curves = chart.curves.iter().zip(&styles.curves);
         let runs = curves.flat_map(|(curve, &style)| {
@@ -53,11 +60,15 @@ impl Contents {
             runs.map(move |run| (curve_pen(style, run.line), lines(&run.points)))
         });
         let traces = chart.traces.iter();
+        let references = chart.references.iter().zip(&styles.references);
+        let joined = chart.joined.iter().zip(&styles.joined);
         let clouds = chart.clouds.iter();
         let place = |&point: &[f64; 2]| plot.pixel(point).filter(|&p| plot.frame.contains(p));
         let (markers, counts) = markers(chart, plot, &styles);
         let mut contents = Self {
-            references: references.map(|line| lines(&line.points)).collect(),
+            references: references
+                .map(|(line, &style)| (reference_pen(style, &line.label), lines(&line.points)))
+                .collect(),
             areas: areas(chart, plot, &styles),
             bands: bands(chart, plot),
             bars: bars::drawn(chart, plot),
@@ -67,6 +78,19 @@ impl Contents {
             traces: traces
                 .zip(styles.traces)
                 .map(|(trace, style)| (trace_pen(style), lines(&trace.points)))
+                .collect(),
+            joined: joined
+                .map(|(series, &style)| Joined {
+                    pen: trace_pen(style),
+                    lines: lines(&series.points),
+                    shape: Shape::of(style),
+                    points: series.points.iter().filter_map(place).collect(),
+                })
+                .collect(),
+            letters: chart
+                .letters
+                .iter()
+                .map(|series| Letters::of(&series.label, series.points.iter().filter_map(place)))
                 .collect(),
             clouds: clouds
                 .map(|cloud| Dots::of(cloud.points.iter().filter_map(place)))
@@ -104,14 +128,19 @@ impl Contents {
 
     /// All lines, and each marker as a line of one point.
     pub(super) fn everything(&self) -> Vec<Vec<Pixel>> {
-        let references = self.references.iter().flatten();
+        let references = self.references.iter().flat_map(|(_, lines)| lines);
         let runs = self.runs.iter().flat_map(|(_, lines)| lines);
         let traces = self.traces.iter().flat_map(|(_, lines)| lines);
+        let joined = self.joined.iter().flat_map(|joined| &joined.lines);
         let markers = self.markers.iter().flat_map(|(_, pixels)| pixels);
+        let points = self.joined.iter().flat_map(|joined| &joined.points);
+        let letters = self.letters.iter().flat_map(|letters| &letters.places);
+        let markers = markers.chain(points).chain(letters);
         let covered = self.covered.iter().flat_map(Rectangle::scanned);
         references
             .chain(runs)
             .chain(traces)
+            .chain(joined)
             .cloned()
             .chain(markers.map(|&pixel| vec![pixel]))
             .chain(self.clouds.iter().flat_map(Dots::lines))
@@ -121,7 +150,7 @@ impl Contents {
             .collect()
     }
 
-    pub(super) fn draw(&self, svg: &mut Svg) {
+    pub(super) fn draw(&self, svg: &mut Svg, chart: &Chart) {
         for (colour, polygons) in &self.areas {
             svg.pale_area(polygons, colour);
         }
@@ -131,9 +160,30 @@ impl Contents {
         for bar in &self.bars {
             bar.draw(svg);
         }
-        for lines in &self.references {
-            svg.lines(lines, REFERENCE);
+        for (pen, lines) in &self.references {
+            svg.lines(lines, *pen);
         }
+        self.draw_curves(svg);
+        self.draw_traces(svg);
+        for (index, dots) in self.clouds.iter().enumerate() {
+            dots.draw(svg, cloud::pen(index, self.clouds.len()));
+        }
+        letters::draw(svg, &self.letters);
+        for (markers, (shape, pixels)) in chart.markers.iter().zip(&self.markers) {
+            for &pixel in pixels {
+                if markers.event {
+                    draw_open(svg, *shape, pixel);
+                } else {
+                    draw_filled(svg, *shape, pixel);
+                }
+            }
+        }
+        for note in &self.notes {
+            note.draw(svg);
+        }
+    }
+
+    fn draw_curves(&self, svg: &mut Svg) {
         // Two dashed lines upon each other must not look like a solid one: the later covers the earlier. Solid ones come last.
         let (solid, dashed): (Vec<_>, Vec<_>) =
             self.runs.iter().partition(|(pen, _)| pen.dashes.is_empty());
@@ -150,6 +200,9 @@ impl Contents {
                 along::draw(svg, *shape, place, colour);
             }
         }
+    }
+
+    fn draw_traces(&self, svg: &mut Svg) {
         // Upon cells of any lightness a line is seen by a white one that is wider, and that never lies upon another line.
         if self.covered.is_some() {
             for (Pen { width, .. }, lines) in &self.traces {
@@ -159,17 +212,41 @@ impl Contents {
         for (pen, lines) in &self.traces {
             svg.lines(lines, *pen);
         }
-        for (index, dots) in self.clouds.iter().enumerate() {
-            dots.draw(svg, cloud::pen(index, self.clouds.len()));
+        for joined in &self.joined {
+            svg.lines(&joined.lines, joined.pen);
         }
-        for (shape, pixels) in &self.markers {
-            for &pixel in pixels {
-                draw_shape(svg, *shape, pixel);
+        for Joined {
+            pen, shape, points, ..
+        } in &self.joined
+        {
+            for &place in points {
+                draw_joined(svg, *shape, place, pen.colour);
             }
         }
-        for note in &self.notes {
-            note.draw(svg);
-        }
+    }
+
+    /// Pieces of curves that marks cover so far that they cannot be read.
+    pub(super) fn short_pieces<'c>(&self, chart: &'c Chart) -> Vec<Piece<'c>> {
+        let marks: Vec<Pixel> = self
+            .markers
+            .iter()
+            .flat_map(|(_, all)| all.clone())
+            .collect();
+        let runs = chart.curves.iter().flat_map(|curve| {
+            let label = &*curve.label;
+            curve.runs.iter().map(move |run| (label, run))
+        });
+        let short = runs
+            .zip(&self.runs)
+            .filter_map(|((label, run), (_, lines))| {
+                let (first, last) = (run.points.first()?, run.points.last()?);
+                short::is_short(lines, &marks).then_some(Piece {
+                    label,
+                    line: run.line,
+                    ends: [first[0], last[0]],
+                })
+            });
+        short.collect()
     }
 }
 
@@ -186,14 +263,14 @@ fn markers(chart: &Chart, plot: &Plot, styles: &Styles) -> (Vec<(Shape, Vec<Pixe
     let kinds: Vec<Kind<'_>> = of_kind
         .map(|(markers, pixels)| Kind {
             label: &markers.series.label,
-            pixels: if markers.merged { pixels } else { &[] },
+            pixels: if markers.event { pixels } else { &[] },
         })
         .collect();
     let merged = mark::merged(&kinds);
     let all = chart.markers.iter().zip(&pixels).zip(&styles.markers);
     let drawn = all.enumerate().map(|(kind, ((markers, pixels), &style))| {
         let own = merged.iter().filter(|mark| mark.kind == kind);
-        let pixels = if markers.merged {
+        let pixels = if markers.event {
             own.map(|mark| mark.pixel).collect()
         } else {
             pixels.clone()
@@ -239,64 +316,6 @@ fn bands(chart: &Chart, plot: &Plot) -> Vec<Vec<Vec<Pixel>>> {
     bands.collect()
 }
 
-/// Whether curves have different styles.
-fn are_told_apart(styles: &[usize]) -> bool {
-    styles.iter().any(|style| *style != styles[0])
-}
-
-/// Numbers of the styles of what is on a chart: parts with one label look alike.
-struct Styles {
-    curves: Vec<usize>,
-    traces: Vec<usize>,
-    markers: Vec<usize>,
-}
-
-impl Styles {
-    fn of(chart: &Chart) -> Self {
-        Self {
-            curves: numbered(chart.curves.iter().map(|curve| &*curve.label)),
-            traces: numbered(chart.traces.iter().map(|trace| &*trace.label)),
-            markers: numbered(chart.markers.iter().map(|markers| &*markers.series.label)),
-        }
-    }
-}
-
-/// Labels numbered in the order in which they first appear; empty ones count each for itself.
-fn numbered<'l>(labels: impl Iterator<Item = &'l str>) -> Vec<usize> {
-    let mut known: Vec<&str> = Vec::new();
-    let number = |label: &'l str| {
-        let same = known.iter().position(|other| *other == label);
-        same.filter(|_| !label.is_empty()).unwrap_or_else(|| {
-            known.push(label);
-            known.len() - 1
-        })
-    };
-    labels.map(number).collect()
-}
-
-fn trace_pen(index: usize) -> Pen {
-    let dashes = [
-        "",
-        "7 3",
-        "1.5 2.5",
-        "10 3 2 3",
-        "16 4",
-        "4 2",
-        "10 3 2 3 2 3",
-        "1.5 6",
-    ][index % 8];
-    pen(COLOURS[index % COLOURS.len()], 1.2, dashes)
-}
-
-fn curve_pen(index: usize, line: Line) -> Pen {
-    let colour = COLOURS[index % COLOURS.len()];
-    match line {
-        Line::Stable => pen(colour, 2.2, ""),
-        Line::Unstable => pen(colour, 2.0, "8 4"),
-        Line::Undecided => pen(colour, 2.2, "2 3.5"),
-    }
-}
-
 /// What decides the range of the axes: everything but the references, and without anything else those.
 pub(super) fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
     let runs = chart.curves.iter().flat_map(|curve| &curve.runs);
@@ -305,6 +324,8 @@ pub(super) fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
     let markers = markers.flat_map(|markers| &markers.series.points);
     let areas = chart.areas.iter().flat_map(|area| &area.points);
     let traces = chart.traces.iter().flat_map(|trace| &trace.points);
+    let points = chart.joined.iter().chain(&chart.letters);
+    let points = points.flat_map(|series| &series.points);
     let bands = chart
         .bands
         .iter()
@@ -312,7 +333,10 @@ pub(super) fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
     let clouds = chart.clouds.iter().flat_map(|cloud| &cloud.points);
     let notes = chart.notes.iter().chain(&chart.texts);
     let notes = notes.map(|note| &note.point);
-    let plain = chart.traces.is_empty() && chart.clouds.is_empty() && chart.notes.is_empty();
+    let plain = chart.traces.is_empty()
+        && chart.clouds.is_empty()
+        && chart.notes.is_empty()
+        && chart.joined.is_empty();
     let alone = plain && chart.curves.is_empty() && chart.markers.is_empty();
     let references = chart.references.iter().filter(move |_| alone);
     curves
@@ -320,89 +344,11 @@ pub(super) fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
         .chain(bands)
         .chain(markers)
         .chain(traces)
+        .chain(points)
         .chain(clouds)
         .chain(notes)
         .chain(references.flat_map(|line| &line.points))
         .filter(|point| point.iter().all(|value| value.is_finite()))
         .copied()
         .chain(bars::shown(&chart.bars))
-}
-
-/// The rows of the legend: the curves if there are several, the kinds of line, references, markers; only what is seen, and
-/// nothing twice.
-pub(super) fn entries(chart: &Chart, contents: &Contents) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = Vec::new();
-    let mut add = |sample, label: &str| {
-        let label = label.to_string();
-        let entry = Entry { sample, label };
-        if !entries.contains(&entry) {
-            entries.push(entry);
-        }
-    };
-    let several = chart.curves.len() > 1;
-    let styles = Styles::of(chart);
-    let shaped = are_told_apart(&styles.curves);
-    let curves = chart.curves.iter().zip(styles.curves);
-    let curves = curves.filter(|(curve, _)| several && !curve.label.is_empty());
-    for (curve, style) in curves {
-        let pen = curve_pen(style, Line::Stable);
-        let sample = if shaped {
-            Sample::Shaped(pen, Shape::of(style))
-        } else {
-            Sample::Line(pen)
-        };
-        add(sample, &curve.label);
-    }
-    for (line, name) in [
-        (Line::Stable, "stable"),
-        (Line::Unstable, "unstable"),
-        (Line::Undecided, "undecided"),
-    ] {
-        let mut runs = chart.curves.iter().flat_map(|curve| &curve.runs);
-        if runs.any(|run| run.line == line && !run.points.is_empty()) {
-            let pen = curve_pen(0, line);
-            let colour = if several { INK } else { pen.colour };
-            add(Sample::Line(Pen { colour, ..pen }), name);
-        }
-    }
-    for (reference, lines) in chart.references.iter().zip(&contents.references) {
-        if !lines.is_empty() && !reference.label.is_empty() {
-            add(Sample::Line(REFERENCE), &reference.label);
-        }
-    }
-    for (trace, (pen, lines)) in chart.traces.iter().zip(&contents.traces) {
-        if !lines.is_empty() && !trace.label.is_empty() {
-            add(Sample::Line(*pen), &trace.label);
-        }
-    }
-    for (index, cloud) in chart.clouds.iter().enumerate() {
-        if !cloud.points.is_empty() && !cloud.label.is_empty() {
-            let pen = cloud::pen(index, chart.clouds.len());
-            add(Sample::Dots(pen), &cloud.label);
-        }
-    }
-    for (colour, label) in filled(chart) {
-        add(Sample::Area(colour), label);
-    }
-    for (markers, (shape, pixels)) in chart.markers.iter().zip(&contents.markers) {
-        let label = &markers.series.label;
-        if !pixels.is_empty() && !label.is_empty() {
-            add(Sample::Marker(*shape), label);
-        }
-    }
-    entries
-}
-
-/// Names of what is filled, with the colours.
-fn filled(chart: &Chart) -> impl Iterator<Item = (&'static str, &str)> {
-    let bands = chart.bands.iter().map(|band| (BAND, band.label.as_str()));
-    let bars = [bars::LARGER, bars::SMALLER]
-        .into_iter()
-        .zip(&chart.of_bars);
-    let bars = bars.map(|(colour, label)| (colour, label.as_str()));
-    let cells = chart.raster.iter().flat_map(super::raster::Raster::shown);
-    bands
-        .chain(bars)
-        .filter(|(_, label)| !label.is_empty())
-        .chain(cells)
 }

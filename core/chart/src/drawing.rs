@@ -2,11 +2,13 @@
 
 use super::axis::{Powers, Range, Scale, Ticks, superscript};
 use super::bars;
-use super::contents::{Contents, entries, shown};
+use super::contents::{Contents, shown};
+use super::entries::entries;
 use super::legend::Legend;
+use super::letters;
 use super::prefix::{prefixed, takes_prefix};
 use super::svg::{Anchor, INK, Pen, Pixel, Rectangle, Svg, fitted, pen, width_of};
-use super::{Axis, Chart};
+use super::{Axis, Chart, Raster, Series, short};
 
 pub(super) const WIDTH: f64 = 900.0;
 pub(super) const HEIGHT: f64 = 600.0;
@@ -16,6 +18,8 @@ const TITLE: f64 = 19.0;
 const LABEL: f64 = 16.0;
 const TICK: f64 = 14.0;
 const REMARK: f64 = 13.0;
+/// Width of lines below the chart.
+const REMARKS: f64 = WIDTH - 2.0 * MARGIN;
 
 const GRID: Pen = pen("#e6e6e6", 0.8, "");
 const AXIS: Pen = pen(INK, 1.1, "");
@@ -23,17 +27,28 @@ const MINOR: Pen = pen(INK, 0.7, "");
 
 /// The SVG document of a chart.
 pub(super) fn draw(chart: &Chart) -> String {
-    let mut plot = Plot::of(chart, 0.0);
-    let mut contents = Contents::of(chart, &plot);
-    let legend = Legend::new(entries(chart, &contents), 0.6 * WIDTH);
-    let place = legend.place(&plot.frame, &contents.everything());
-    let place = place.unwrap_or_else(|| {
-        plot = Plot::of(chart, legend.width + MARGIN);
-        contents = Contents::of(chart, &plot);
-        let left = plot.frame.right() + MARGIN;
-        legend.at(left, plot.frame.top)
-    });
-
+    let mut remarks = chart.remarks.clone();
+    remarks.extend(outside(chart));
+    if chart.of_axes.axes.contains(&true) {
+        remarks.push(chart.of_axes.text.clone());
+    }
+    let mut laid = Laid::out(chart, &lines_of(&remarks));
+    // Lines more make the frame smaller, which makes no piece longer.
+    let short = short::said(&laid.contents.short_pieces(chart), &laid.plot);
+    let unseen: Vec<String> = short
+        .into_iter()
+        .chain(letters::upon_each_other(&laid.contents.letters))
+        .collect();
+    if !unseen.is_empty() {
+        remarks.splice(0..0, unseen);
+        laid = Laid::out(chart, &lines_of(&remarks));
+    }
+    let Laid {
+        plot,
+        contents,
+        legend,
+        place,
+    } = laid;
     let mut svg = Svg::new(WIDTH, HEIGHT, &chart.title);
     let size = fitted(&chart.title, TITLE, WIDTH - 2.0 * MARGIN);
     let baseline = MARGIN + 0.8 * TITLE;
@@ -42,25 +57,86 @@ pub(super) fn draw(chart: &Chart) -> String {
         raster.draw(&mut svg, &plot.frame);
     }
     plot.draw_axes(&mut svg, chart.raster.is_none());
-    contents.draw(&mut svg);
+    contents.draw(&mut svg, chart);
     plot.draw_border(&mut svg);
-    draw_remarks(&mut svg, chart);
+    draw_remarks(&mut svg, &lines_of(&remarks));
     if !legend.is_empty() {
         legend.draw(&mut svg, place);
     }
     svg.finish()
 }
 
-/// Height of the lines below the chart.
-fn height_of_remarks(chart: &Chart) -> f64 {
-    1.35 * REMARK * chart.remarks.len() as f64
+/// Everything with its place.
+struct Laid {
+    plot: Plot,
+    contents: Contents,
+    legend: Legend,
+    place: Rectangle,
 }
 
-fn draw_remarks(svg: &mut Svg, chart: &Chart) {
-    for (row, remark) in chart.remarks.iter().rev().enumerate() {
-        let size = fitted(remark, REMARK, WIDTH - 2.0 * MARGIN);
+impl Laid {
+    /// With room for some lines below the frame, and beside it for the legend where that finds no place inside.
+    fn out(chart: &Chart, lines: &[String]) -> Self {
+        let below = height_of(lines);
+        let mut plot = Plot::of(chart, 0.0, below);
+        let mut contents = Contents::of(chart, &plot);
+        let legend = Legend::new(entries(chart, &contents), 0.6 * WIDTH);
+        let place = legend.place(&plot.frame, &contents.everything());
+        let place = place.unwrap_or_else(|| {
+            plot = Plot::of(chart, legend.width + MARGIN, below);
+            contents = Contents::of(chart, &plot);
+            let left = plot.frame.right() + MARGIN;
+            legend.at(left, plot.frame.top)
+        });
+        Self {
+            plot,
+            contents,
+            legend,
+            place,
+        }
+    }
+}
+
+/// How many points with letters are outside of the cells, in words; nothing if none is.
+fn outside(chart: &Chart) -> Option<String> {
+    let Raster { x, y, .. } = chart.raster.as_ref()?;
+    let between = |[from, to]: [f64; 2], u: f64| (from.min(to)..=from.max(to)).contains(&u);
+    let parts = chart.letters.iter().filter_map(|Series { label, points }| {
+        let beyond = points
+            .iter()
+            .filter(|[u, v]| !between(*x, *u) || !between(*y, *v));
+        let beyond = beyond.count();
+        (beyond > 0).then(|| format!("{beyond} of the {} points {label}", points.len()))
+    });
+    let parts: Vec<String> = parts.collect();
+    (!parts.is_empty()).then(|| format!("outside of the frame: {}", parts.join(", ")))
+}
+
+/// Remarks as lines below the chart: short ones share a line.
+fn lines_of(remarks: &[String]) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for remark in remarks {
+        match lines.last_mut() {
+            Some(line) if width_of(&format!("{line}; {remark}"), REMARK) <= REMARKS => {
+                line.push_str("; ");
+                line.push_str(remark);
+            }
+            _ => lines.push(remark.clone()),
+        }
+    }
+    lines
+}
+
+/// Height of the lines below the chart.
+fn height_of(lines: &[String]) -> f64 {
+    1.35 * REMARK * lines.len() as f64
+}
+
+fn draw_remarks(svg: &mut Svg, lines: &[String]) {
+    for (row, line) in lines.iter().rev().enumerate() {
+        let size = fitted(line, REMARK, REMARKS);
         let baseline = HEIGHT - 0.7 * MARGIN - 1.35 * REMARK * row as f64;
-        svg.text([MARGIN, baseline], size, Anchor::Start, remark);
+        svg.text([MARGIN, baseline], size, Anchor::Start, line);
     }
 }
 
@@ -79,6 +155,8 @@ pub(super) struct Ruler {
     pub(super) range: Range,
     labelled: Vec<(f64, String)>,
     minor: Vec<f64>,
+    /// Numbers at the axis are to be multiplied by ten to this power.
+    power: i32,
 }
 
 impl Ruler {
@@ -112,6 +190,7 @@ impl Ruler {
             range,
             labelled: ticks.labelled,
             minor: ticks.minor,
+            power: ticks.power,
         }
     }
 }
@@ -132,13 +211,14 @@ impl Ruler {
             range: Range::between(Scale::Linear, [0.0, 1.0]),
             labelled,
             minor: Vec::new(),
+            power: 0,
         }
     }
 }
 
 impl Plot {
-    /// The axes of a chart, with some room left free on the right.
-    fn of(chart: &Chart, free: f64) -> Self {
+    /// The axes of a chart, with some room left free on the right and below.
+    fn of(chart: &Chart, free: f64, below: f64) -> Self {
         let values = |k: usize| shown(chart).map(move |point| point[k]);
         let cells = chart.raster.as_ref().map(|raster| [raster.x, raster.y]);
         let (x, y) = match (cells, chart.limits) {
@@ -171,8 +251,7 @@ impl Plot {
         let left = MARGIN + 1.3 * LABEL + widest(&y) + 12.0;
         let top = MARGIN + 1.2 * TITLE + 10.0;
         let right = (MARGIN + free).max(MARGIN + widest(&x) / 2.0);
-        let remarks = height_of_remarks(chart);
-        let bottom = MARGIN + 1.2 * LABEL + 1.2 * TICK + 16.0 + remarks;
+        let bottom = MARGIN + 1.2 * LABEL + 1.2 * TICK + 16.0 + below;
         let frame = Rectangle {
             left,
             top,
@@ -183,7 +262,7 @@ impl Plot {
             frame,
             x,
             y,
-            baseline: HEIGHT - MARGIN - 0.25 * LABEL - remarks,
+            baseline: HEIGHT - MARGIN - 0.25 * LABEL - below,
         }
     }
 
@@ -194,6 +273,11 @@ impl Plot {
     /// Where a value is along the horizontal axis.
     pub(super) fn across(&self, value: f64) -> Option<f64> {
         self.x.range.position(value)
+    }
+
+    /// A value as the horizontal axis has it, to a part of a pixel.
+    pub(super) fn along(&self, value: f64) -> String {
+        self.x.range.written(value, self.x.power)
     }
 
     /// The pixel of positions along the axes.

@@ -1,7 +1,7 @@
 //! The legend: its entries, a place where it covers nothing, and how it is drawn.
 
 use super::along;
-use super::shape::{Shape, draw_shape};
+use super::shape::{Shape, draw_filled, draw_joined, draw_open};
 use super::svg::{Anchor, Pen, Pixel, Rectangle, Svg, fitted, width_of};
 
 const SIZE: f64 = 14.0;
@@ -25,7 +25,12 @@ pub(super) enum Sample {
     Line(Pen),
     /// A line with small shapes along it.
     Shaped(Pen, Shape),
-    Marker(Shape),
+    /// A line through points of a shape.
+    Joined(Pen, Shape),
+    /// The mark of an event.
+    Open(Shape),
+    /// A point.
+    Filled(Shape),
     Dots(Pen),
     /// A colour of cells.
     Area(&'static str),
@@ -119,7 +124,12 @@ impl Legend {
                     svg.lines(&[vec![[start, middle], [start + SAMPLE, middle]]], pen);
                     along::draw(svg, shape, [start + SAMPLE / 2.0, middle], pen.colour);
                 }
-                Sample::Marker(shape) => draw_shape(svg, shape, [start + SAMPLE / 2.0, middle]),
+                Sample::Joined(pen, shape) => {
+                    svg.lines(&[vec![[start, middle], [start + SAMPLE, middle]]], pen);
+                    draw_joined(svg, shape, [start + SAMPLE / 2.0, middle], pen.colour);
+                }
+                Sample::Open(shape) => draw_open(svg, shape, [start + SAMPLE / 2.0, middle]),
+                Sample::Filled(shape) => draw_filled(svg, shape, [start + SAMPLE / 2.0, middle]),
                 Sample::Dots(pen) => {
                     let dot = |i: f64| vec![[start + i * SAMPLE / 4.0, middle]];
                     svg.dots(&[dot(1.0), dot(2.0), dot(3.0)], pen);

@@ -2,7 +2,8 @@
 //!
 //! Stable parts of a curve are solid, unstable ones dashed, undecided ones dotted, so that a chart says the same in
 //! black and white; the colours are ones that colour-blind readers tell apart as well, and the first four
-//! differ in lightness. Where there are several curves, small shapes along them tell them apart without colours.
+//! differ in lightness. Where there are several curves, small shapes along them tell them apart without colours. Marks of events are white
+//! inside, other points dark. Pieces of a curve that marks cover are said below the chart.
 //!
 //! The SVG is written here, by a small writer of its own, rather than through a plotting library. By its source, the
 //! one considered (plotters 0.3) would have rounded every point to a whole pixel, which puts steps into a smooth curve,
@@ -30,8 +31,10 @@ mod bars;
 mod cloud;
 mod contents;
 mod drawing;
+mod entries;
 mod glyphs;
 mod legend;
+mod letters;
 mod mark;
 mod note;
 mod page;
@@ -39,7 +42,9 @@ mod polyline;
 mod prefix;
 mod raster;
 mod shape;
+mod short;
 mod smooth;
+mod style;
 mod svg;
 #[cfg(test)]
 mod tests;
@@ -71,10 +76,13 @@ pub struct Chart {
     of_bars: [String; 2],
     markers: Vec<Markers>,
     traces: Vec<Series>,
+    joined: Vec<Series>,
+    letters: Vec<Series>,
     clouds: Vec<Series>,
     notes: Vec<Note>,
     texts: Vec<Note>,
     remarks: Vec<String>,
+    of_axes: OfAxes,
     raster: Option<Raster>,
     limits: Option<[[f64; 2]; 2]>,
 }
@@ -143,11 +151,18 @@ pub struct Note {
     pub point: [f64; 2],
 }
 
-/// Markers, and whether those upon each other are one.
+/// Markers, and whether they are of events, of which those upon each other are one.
 #[derive(Debug, Clone, PartialEq)]
 struct Markers {
     series: Series,
-    merged: bool,
+    event: bool,
+}
+
+/// What is said below of the axes, and which of them still have the label of which it is said.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct OfAxes {
+    text: String,
+    axes: [bool; 2],
 }
 
 /// Why a chart was not written.
@@ -179,6 +194,17 @@ struct Axis {
     scale: Scale,
 }
 
+impl Line {
+    /// What it says, in a word.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Stable => "stable",
+            Self::Unstable => "unstable",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
 impl Chart {
     /// An empty chart.
     pub fn new(title: impl Into<String>) -> Self {
@@ -200,6 +226,7 @@ impl Chart {
     #[must_use]
     pub fn x(mut self, label: impl Into<String>) -> Self {
         self.x.label = label.into();
+        self.of_axes.axes[0] = false;
         self
     }
 
@@ -207,6 +234,7 @@ impl Chart {
     #[must_use]
     pub fn y(mut self, label: impl Into<String>) -> Self {
         self.y.label = label.into();
+        self.of_axes.axes[1] = false;
         self
     }
 
@@ -239,25 +267,40 @@ impl Chart {
         self
     }
 
-    /// Adds points marked by a shape: circles for the first kind added to a chart, then squares, diamonds, triangles, and these upside
+    /// Adds points: dark shapes, circles for the first kind added to a chart, then squares, diamonds, triangles, and these upside
     /// down or crossed.
     #[must_use]
     pub fn markers(mut self, markers: Series) -> Self {
         self.markers.push(Markers {
             series: markers,
-            merged: false,
+            event: false,
         });
         self
     }
 
-    /// Adds marks of events: as [`markers`](Self::markers), but marks upon each other are drawn as one, with a count beside it, and with
-    /// names where they are of several kinds.
+    /// Adds marks of events: shapes as those of [`markers`](Self::markers), but white inside; and marks upon each other are drawn as one, with
+    /// a count beside it, and with names where they are of several kinds.
     #[must_use]
     pub fn marks(mut self, marks: Series) -> Self {
         self.markers.push(Markers {
             series: marks,
-            merged: true,
+            event: true,
         });
+        self
+    }
+
+    /// Adds points with the line through them, as of what was measured at several settings: a shape, a colour and dashes for each label. A
+    /// point that is not finite interrupts the line.
+    #[must_use]
+    pub fn joined(mut self, points: Series) -> Self {
+        self.joined.push(points);
+        self
+    }
+
+    /// Adds points that are drawn as their label, a letter or a number, each on a small white disc; the legend says nothing of them.
+    #[must_use]
+    pub fn letters(mut self, points: Series) -> Self {
+        self.letters.push(points);
         self
     }
 
@@ -319,6 +362,16 @@ impl Chart {
     #[must_use]
     pub fn remark(mut self, remark: impl Into<String>) -> Self {
         self.remarks.push(remark.into());
+        self
+    }
+
+    /// Adds a line of text below the chart about both axes. It goes once both have other labels.
+    #[must_use]
+    pub fn remark_on_axes(mut self, remark: impl Into<String>) -> Self {
+        self.of_axes = OfAxes {
+            text: remark.into(),
+            axes: [true; 2],
+        };
         self
     }
 

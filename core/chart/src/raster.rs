@@ -1,11 +1,12 @@
-//! Coloured cells, as a picture inside the SVG.
+//! Coloured cells: as rectangles, or where these would be too many as a picture inside the SVG.
 //!
-//! A grid of 512 by 512 cells would be as many rectangles. As a picture with a palette it is half a byte for each. It is stored
+//! Rectangles are sharp in every program that shows them; of a picture some make the cells blurred. A grid of 512 by 512 cells may
+//! be as many rectangles. As a picture with a palette it is half a byte for each. It is stored
 //! without compression: a compressor would be another dependency, and what is written is small.
 //!
 //! Source: PNG specification (ISO/IEC 15948); RFC 1950, 1951 (stored blocks) and 4648.
 
-use super::svg::{Pixel, Rectangle, Svg};
+use super::svg::{Rectangle, Svg};
 
 /// Coloured cells over a range of both axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,6 +127,9 @@ struct Area {
     rows: [usize; 2],
 }
 
+/// More rectangles than these are drawn as a picture.
+const RECTANGLES: usize = 20_000;
+
 /// Classes that a palette of four bits has room for, besides white.
 const CLASSES: u8 = 15;
 
@@ -142,17 +146,38 @@ impl Raster {
         if self.columns == 0 || self.cells.len() < self.columns {
             return;
         }
-        svg.image(place, &base64(&self.png()));
-        for hatch in &HATCHES {
-            let areas = self.areas(hatch.fill);
-            if areas.is_empty() {
+        let filled = self.filled();
+        let count: usize = filled.iter().map(|(_, areas)| areas.len()).sum();
+        let as_picture = count > RECTANGLES;
+        if as_picture {
+            svg.image(place, &base64(&self.png()));
+        }
+        for (fill, areas) in filled {
+            let hatch = HATCHES.iter().find(|hatch| hatch.fill == fill);
+            if let Some(Hatch {
+                id, path, width, ..
+            }) = hatch
+            {
+                svg.pattern(id, path, *width);
+            } else if as_picture {
                 continue;
             }
-            svg.pattern(hatch.id, hatch.path, hatch.width);
-            let corners: Vec<Vec<Pixel>> =
-                areas.iter().map(|area| self.corners(area, place)).collect();
-            svg.areas(&corners, hatch.fill);
+            let rectangles = areas.iter().map(|area| self.rectangle(area, place));
+            svg.rectangles(rectangles, fill);
         }
+    }
+
+    /// What cells are filled with, each once, and where. What has no class stays white.
+    fn filled(&self) -> Vec<(&'static str, Vec<Area>)> {
+        let mut filled: Vec<(&'static str, Vec<Area>)> = Vec::new();
+        for (_, colour) in self.classes.iter().take(usize::from(CLASSES)) {
+            let fill = colour.fill();
+            let areas = self.areas(fill);
+            if !areas.is_empty() && filled.iter().all(|(other, _)| *other != fill) {
+                filled.push((fill, areas));
+            }
+        }
+        filled
     }
 
     /// The rectangles of cells that are filled so: as tall as rows that follow each other have the same columns.
@@ -184,7 +209,7 @@ impl Raster {
         areas
     }
 
-    fn corners(&self, area: &Area, place: &Rectangle) -> Vec<Pixel> {
+    fn rectangle(&self, area: &Area, place: &Rectangle) -> Rectangle {
         let rows = (self.cells.len() / self.columns) as f64;
         let [left, right] = area
             .columns
@@ -192,7 +217,12 @@ impl Raster {
         let [bottom, top] = area
             .rows
             .map(|row| place.bottom() - place.height * row as f64 / rows);
-        vec![[left, bottom], [right, bottom], [right, top], [left, top]]
+        Rectangle {
+            left,
+            top,
+            width: right - left,
+            height: bottom - top,
+        }
     }
 
     /// The cells as a PNG file with a palette.
@@ -350,14 +380,52 @@ mod tests {
             width: 30.0,
             height: 60.0,
         };
-        let corners = raster.corners(&expected[1], &place);
-        let known = [[20.0, 40.0], [40.0, 40.0], [40.0, 20.0], [20.0, 20.0]];
-        assert_eq!(corners, known);
+        let known = Rectangle {
+            left: 20.0,
+            top: 20.0,
+            width: 20.0,
+            height: 20.0,
+        };
+        assert_eq!(raster.rectangle(&expected[1], &place), known);
         let mut svg = Svg::new(90.0, 90.0, "");
         raster.draw(&mut svg, &place);
         let text = svg.finish();
         assert!(text.contains("<pattern id=\"hatch-1\""), "{text}");
         assert_eq!(text.matches("url(#hatch-1)").count(), 1);
         assert!(!text.contains("hatch-0"));
+        // Of the other class the right of the two lower rows, and the left of the upper one: no picture is needed.
+        assert!(
+            text.contains("M30 80H40V40H30ZM10 40H20V20H10Z\" fill=\"#fde725\""),
+            "{text}"
+        );
+        assert!(!text.contains("<image"));
+    }
+
+    #[test]
+    fn cells_of_too_many_rectangles_are_a_picture() {
+        let columns = 201;
+        let raster = Raster {
+            x: [0.0, 1.0],
+            y: [0.0, 1.0],
+            columns,
+            cells: (0..columns * columns)
+                .map(|cell| (cell % 2) as u8)
+                .collect(),
+            classes: vec![
+                ("a".to_owned(), Colour::Step(0)),
+                ("b".to_owned(), Colour::Hatched(0)),
+            ],
+        };
+        let place = Rectangle {
+            left: 0.0,
+            top: 0.0,
+            width: 100.0,
+            height: 100.0,
+        };
+        let mut svg = Svg::new(100.0, 100.0, "");
+        raster.draw(&mut svg, &place);
+        let text = svg.finish();
+        assert!(text.contains("<image") && !text.contains("#fde725"));
+        assert!(text.contains("url(#hatch-0)"));
     }
 }

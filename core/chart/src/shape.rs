@@ -8,6 +8,14 @@ const MARKER: Pen = Pen {
     dashes: "",
 };
 
+/// Size of what is filled, as a part of that of a mark, and its edge.
+const FILLED: f64 = 0.9;
+const EDGE: Pen = Pen {
+    colour: "#ffffff",
+    width: 1.0,
+    dashes: "",
+};
+
 /// The shape of one kind of markers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
@@ -36,9 +44,19 @@ impl Shape {
     }
 }
 
-/// Draws a marker: white inside, so that it shows on a curve.
-pub(super) fn draw_shape(svg: &mut Svg, shape: Shape, place: Pixel) {
+/// Draws the mark of an event: white inside, so that it shows on a curve.
+pub(super) fn draw_open(svg: &mut Svg, shape: Shape, place: Pixel) {
     shape.draw(svg, place, 1.0, "#ffffff", MARKER);
+}
+
+/// Draws a point: dark, with a white edge, so that it shows on cells of any lightness.
+pub(super) fn draw_filled(svg: &mut Svg, shape: Shape, place: Pixel) {
+    shape.draw(svg, place, FILLED, INK, EDGE);
+}
+
+/// Draws a point of a line, in its colour.
+pub(super) fn draw_joined(svg: &mut Svg, shape: Shape, place: Pixel, colour: &'static str) {
+    shape.draw(svg, place, FILLED, colour, EDGE);
 }
 
 impl Shape {

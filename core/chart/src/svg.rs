@@ -147,13 +147,13 @@ impl Svg {
         ));
     }
 
-    /// A picture in PNG format, stretched over a rectangle without smoothing.
+    /// A picture in PNG format, stretched over a rectangle without smoothing: the attribute is for programs that do not know the word in the style.
     pub(super) fn image(&mut self, place: &Rectangle, base64: &str) {
         let (x, y) = (Number(place.left), Number(place.top));
         let (width, height) = (Number(place.width), Number(place.height));
         self.push(format_args!(
             "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
-             style=\"image-rendering:pixelated\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+             image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
              xlink:href=\"data:image/png;base64,{base64}\"/>"
         ));
     }
@@ -191,10 +191,18 @@ impl Svg {
         ));
     }
 
-    /// Closed shapes of one filling, without an outline.
-    pub(super) fn areas(&mut self, shapes: &[Vec<Pixel>], fill: &str) {
-        let path = Path(shapes);
-        self.push(format_args!("<path d=\"{path}\" fill=\"{fill}\"/>"));
+    /// Rectangles of one filling, without an outline; those that touch have no seam.
+    pub(super) fn rectangles(&mut self, all: impl Iterator<Item = Rectangle>, fill: &str) {
+        let mut path = String::new();
+        for rectangle in all {
+            let [left, right] = [rectangle.left, rectangle.right()].map(Number);
+            let [top, bottom] = [rectangle.top, rectangle.bottom()].map(Number);
+            // Writing to a string does not fail.
+            let _ = write!(path, "M{left} {bottom}H{right}V{top}H{left}Z");
+        }
+        self.push(format_args!(
+            "<path d=\"{path}\" fill=\"{fill}\" shape-rendering=\"crispEdges\"/>"
+        ));
     }
 
     /// A pattern to fill areas with: a white square of eight pixels with a path.

@@ -176,7 +176,7 @@ fn motions_dots_and_cells_have_their_place_and_legend() {
         "down",
         "basin of period 1",
         "escape",
-        "data:image/png;base64,",
+        "crispEdges",
         "h0",
     ] {
         assert!(svg.contains(part), "{part}");
@@ -262,4 +262,122 @@ fn marks_upon_each_other_are_counted_and_markers_are_not() {
     let svg = said.to_svg();
     assert!(svg.contains("not marked: 3 grazing") && svg.contains("drive = 2"));
     assert_eq!(svg.matches("<circle").count(), 3);
+}
+
+#[test]
+fn pieces_that_marks_cover_are_said_below() {
+    let piece = |line, from: f64, to: f64| run(line, &[[from, 1.0], [to, 1.0]]);
+    // A range of 0 to 100 takes some 800 pixels: a piece of two is below its marks, one of ten is not.
+    let curve = |label: &str| Curve {
+        label: label.into(),
+        runs: vec![
+            piece(Line::Stable, 0.0, 40.0),
+            piece(Line::Unstable, 40.0, 42.0),
+            piece(Line::Stable, 42.0, 52.0),
+            piece(Line::Unstable, 52.0, 54.0),
+            piece(Line::Stable, 54.0, 100.0),
+        ],
+    };
+    let marks = Series::new("fold", [[40.0, 1.0], [42.0, 1.0], [52.0, 1.0], [54.0, 1.0]]);
+    let chart = Chart::new("").curve(curve("")).marks(marks);
+    let below = "short pieces: unstable between 40.0 and 42.0, unstable between 52.0 and 54.0";
+    assert!(chart.to_svg().contains(below));
+    // With the names of curves where there are several; digits follow the axis, as its prefix does.
+    let several = chart.clone().curve(curve("period 2")).to_svg();
+    assert!(several.contains(&format!("{below}; period 2 unstable between 40.0")));
+    let lines = chart.curves[0].runs.iter().flat_map(|run| &run.points);
+    assert_eq!(lines.count(), 10);
+    let plain = Chart::new("").curve(Curve {
+        label: String::new(),
+        runs: vec![
+            piece(Line::Stable, 0.0, 40.0),
+            piece(Line::Unstable, 40.0, 100.0),
+        ],
+    });
+    assert!(!plain.to_svg().contains("short pieces"));
+}
+
+#[test]
+fn points_outside_of_the_cells_are_counted() {
+    let cells = Raster {
+        x: [0.0, 1.0],
+        y: [0.0, 1.0],
+        columns: 1,
+        cells: vec![0],
+        classes: vec![("a, period 2".into(), Colour::Class(0))],
+    };
+    let chart = Chart::new("")
+        .raster(cells)
+        .letters(Series::new("a", [[0.5, 0.5], [0.5, 2.0]]))
+        .letters(Series::new("b", [[0.25, 0.25]]));
+    let svg = chart.to_svg();
+    assert!(svg.contains("outside of the frame: 1 of the 2 points a\""));
+    assert_eq!(svg.matches("aria-label=\"a\"").count(), 1);
+    assert_eq!(svg.matches("aria-label=\"b\"").count(), 1);
+}
+
+#[test]
+fn joined_points_have_their_line_in_the_legend() {
+    let points = [
+        [0.0, 1.0],
+        [1.0, 2.0],
+        [f64::NAN, 0.0],
+        [2.0, 1.0],
+        [3.0, 2.0],
+    ];
+    let svg = Chart::new("")
+        .joined(Series::new("shooting", points))
+        .to_svg();
+    // The lines of two pieces, and that of the legend; four points, and that of the legend.
+    let lines: Vec<&str> = svg
+        .lines()
+        .filter(|line| line.contains("stroke=\"#0b4f8a\""))
+        .collect();
+    assert_eq!(lines.len(), 2);
+    assert_eq!(lines[0].matches('M').count(), 2);
+    assert_eq!(svg.matches("<circle").count(), 5);
+    assert!(svg.contains("aria-label=\"shooting\""));
+}
+
+#[test]
+fn events_are_white_inside_and_points_dark() {
+    let at = |x: f64| Series::new("mark", [[x, 0.0]]);
+    let filled = |svg: &str, colour: &str| {
+        let circles = svg.lines().filter(|line| line.starts_with("<circle"));
+        circles
+            .filter(|line| line.contains(&format!("fill=\"{colour}\"")))
+            .count()
+    };
+    let event = Chart::new("").marks(at(1.0)).to_svg();
+    assert_eq!(
+        (filled(&event, "#ffffff"), filled(&event, svg::INK)),
+        (2, 0)
+    );
+    let point = Chart::new("").markers(at(1.0)).to_svg();
+    assert_eq!(
+        (filled(&point, "#ffffff"), filled(&point, svg::INK)),
+        (0, 2)
+    );
+}
+
+#[test]
+fn what_is_said_of_axes_goes_with_their_labels() {
+    let chart = Chart::new("")
+        .x("omega")
+        .y("x")
+        .remark_on_axes("plain numbers");
+    assert!(chart.to_svg().contains("plain numbers"));
+    let one = chart.x("frequency / resonance");
+    assert!(one.to_svg().contains("plain numbers"));
+    assert!(!one.y("x / gap").to_svg().contains("plain numbers"));
+}
+
+#[test]
+fn short_remarks_share_a_line_and_letters_upon_each_other_are_counted() {
+    let letters = Series::new("f", [[0.0, 0.0], [1e-6, 0.0], [1.0, 1.0]]);
+    let long = "a remark that takes most of a line ".repeat(3);
+    let chart = Chart::new("").letters(letters).remark("one").remark("two");
+    let svg = chart.remark(long.trim()).to_svg();
+    assert!(svg.contains("\"upon each other: 3 points f at 2 places; one; two\""));
+    assert!(svg.contains(&format!("\"{}\"", long.trim())));
 }

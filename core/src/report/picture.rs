@@ -96,7 +96,7 @@ pub(crate) fn chart_of(
 pub(crate) fn plain(chart: Chart, drawn: &[Drawn<'_>]) -> Chart {
     let mut models = drawn.iter().map(|drawn| &drawn.seen.branch.model);
     if models.all(Model::is_plain) {
-        return chart.remark(PLAIN);
+        return chart.remark_on_axes(PLAIN);
     }
     chart
 }
