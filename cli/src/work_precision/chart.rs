@@ -1,6 +1,6 @@
 //! Error over time, both logarithmic.
 
-use hertzian::chart::{Chart, Note, Scale, Series};
+use hertzian::chart::{Chart, Scale, Series};
 
 use super::measure::Measured;
 use super::method::Family;
@@ -11,8 +11,9 @@ use super::problem::Problem;
 /// Errors below this are drawn as this: closed forms reach rounding.
 const FLOOR: f64 = 1e-16;
 /// What stands at settings that failed, and what that is.
-const FAILED: &str = "×";
-const OF_FAILED: &str = "failed: it finds other folds than there are, or does not end";
+const FAILED: &str = "F";
+const OF_FAILED: &str =
+    "F: failed, by finding other folds than there are, or by ending early or never";
 
 /// The chart of one quantity.
 pub fn chart(
@@ -21,7 +22,7 @@ pub fn chart(
     label: &str,
     error: impl Fn(&Measured) -> Option<f64>,
 ) -> Chart {
-    let mut chart = Chart::new(format!("{}: {label}", problem.title))
+    let mut chart = Chart::new(problem.title)
         .x("time of the curve without multipliers, milliseconds")
         .y(label)
         .scales(Scale::Logarithmic, Scale::Logarithmic);
@@ -41,38 +42,46 @@ pub fn chart(
     }
     let failed = measured.iter().filter(|one| one.failure.is_some());
     let failed: Vec<[f64; 2]> = failed.filter_map(place).collect();
-    if !failed.is_empty() {
-        chart = chart.remark(format!("{FAILED}: any method, {OF_FAILED}"));
-    }
     chart.letters(Series::new(FAILED, failed))
 }
 
-/// The same with the points of other programs, failures as well.
-pub fn with_peers(chart: Chart, peers: &[Peer], error: impl Fn(&Peer) -> Option<f64>) -> Chart {
-    let shown = |peer: &&Peer| error(peer).is_some() && peer.failure.is_some();
-    let chart = if peers.iter().any(|peer| shown(&peer)) {
-        chart.remark(format!("other programs, {OF_FAILED}"))
-    } else {
-        chart
-    };
-    peers.iter().fold(chart, |chart, peer| {
-        let Some(error) = error(peer) else {
-            return chart;
-        };
-        let harmonics = peer.setting.starts_with("K =").then_some(&peer.setting);
-        let setting = harmonics.map_or_else(String::new, |setting| format!(", {setting}"));
-        let failed = peer.failure.as_ref().map_or("", |_| ", failed");
-        let name = peer.name.split(' ').next().unwrap_or_default();
-        chart.note(Note {
-            label: format!("{name}{setting}{failed}"),
-            point: [1e3 * peer.seconds[0], error.max(FLOOR)],
-        })
-    })
+/// The same with the points of other programs, failures as well: each the first letter of its program, and its harmonics if it has them.
+pub fn with_peers(
+    chart: Chart,
+    measured: &[Measured],
+    peers: &[Peer],
+    error: impl Fn(&Peer) -> Option<f64>,
+) -> Chart {
+    let shown: Vec<(&Peer, f64)> = peers
+        .iter()
+        .filter_map(|peer| Some((peer, error(peer)?)))
+        .collect();
+    let mut chart = chart;
+    for program in shown.chunk_by(|(a, _), (b, _)| a.name == b.name) {
+        let mut letters = Vec::new();
+        for (peer, error) in program {
+            let harmonics = peer.setting.strip_prefix("K = ").unwrap_or_default();
+            let letter = format!("{}{harmonics}", peer.name.get(..1).unwrap_or_default());
+            let point = [1e3 * peer.seconds[0], error.max(FLOOR)];
+            chart = chart.letters(Series::new(&letter, [point]));
+            letters.push(letter);
+        }
+        let name = &program[0].0.name;
+        let failed = program.iter().all(|(peer, _)| peer.failure.is_some());
+        let failed = if failed { ", failed" } else { "" };
+        chart = chart.remark(format!("{}: {name}{failed}", letters.join(", ")));
+    }
+    let failures = measured.iter().map(|one| &one.failure);
+    let mut failures = failures.chain(shown.iter().map(|(peer, _)| &peer.failure));
+    if failures.any(Option::is_some) {
+        chart = chart.remark(OF_FAILED);
+    }
+    chart
 }
 
 /// Errors of multipliers over the time that they take.
 pub fn multipliers(problem: &Problem, answers: &[Answer]) -> Chart {
-    let mut chart = Chart::new(format!("{}: multipliers", problem.title))
+    let mut chart = Chart::new(problem.title)
         .x("time of one orbit's multipliers, milliseconds")
         .y("largest error of a multiplier")
         .scales(Scale::Logarithmic, Scale::Logarithmic);

@@ -158,12 +158,12 @@ pub fn picture(section: &Section) -> Page {
     if !reference.folds.is_empty() {
         let label = "error of ω at the fold of largest amplitude";
         let fold = chart::chart(problem, measured, label, |one| one.fold);
-        page = page.chart(chart::with_peers(fold, peers, |peer| peer.fold));
+        page = page.chart(chart::with_peers(fold, measured, peers, |peer| peer.fold));
     }
     let label = "relative error of peak-to-peak of one orbit";
     let size = chart::chart(problem, measured, label, |one| one.peak_to_peak);
-    page.chart(chart::with_peers(size, peers, |peer| peer.peak_to_peak))
-        .chart(chart::multipliers(problem, answers))
+    let size = chart::with_peers(size, measured, peers, |peer| peer.peak_to_peak);
+    page.chart(size).chart(chart::multipliers(problem, answers))
 }
 
 /// Writes what is known so far.

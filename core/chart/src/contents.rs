@@ -23,7 +23,8 @@ const HALO: f64 = 2.8;
 pub(super) struct Joined {
     pub(super) pen: Pen,
     lines: Vec<Vec<Pixel>>,
-    pub(super) shape: Shape,
+    /// Number of its shape.
+    pub(super) index: usize,
     pub(super) points: Vec<Pixel>,
 }
 
@@ -83,7 +84,7 @@ impl Contents {
                 .map(|(series, &style)| Joined {
                     pen: trace_pen(style),
                     lines: lines(&series.points),
-                    shape: Shape::of(style),
+                    index: style,
                     points: series.points.iter().filter_map(place).collect(),
                 })
                 .collect(),
@@ -216,11 +217,11 @@ impl Contents {
             svg.lines(&joined.lines, joined.pen);
         }
         for Joined {
-            pen, shape, points, ..
+            pen, index, points, ..
         } in &self.joined
         {
             for &place in points {
-                draw_joined(svg, *shape, place, pen.colour);
+                draw_joined(svg, *index, place, pen.colour);
             }
         }
     }

@@ -55,7 +55,7 @@ pub(super) fn entries(chart: &Chart, contents: &Contents) -> Vec<Entry> {
     }
     for (series, joined) in chart.joined.iter().zip(&contents.joined) {
         if !joined.points.is_empty() && !series.label.is_empty() {
-            add(Sample::Joined(joined.pen, joined.shape), &series.label);
+            add(Sample::Joined(joined.pen, joined.index), &series.label);
         }
     }
     for (index, cloud) in chart.clouds.iter().enumerate() {

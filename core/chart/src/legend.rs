@@ -25,8 +25,8 @@ pub(super) enum Sample {
     Line(Pen),
     /// A line with small shapes along it.
     Shaped(Pen, Shape),
-    /// A line through points of a shape.
-    Joined(Pen, Shape),
+    /// A line through points, with the number of their shape.
+    Joined(Pen, usize),
     /// The mark of an event.
     Open(Shape),
     /// A point.
@@ -124,9 +124,9 @@ impl Legend {
                     svg.lines(&[vec![[start, middle], [start + SAMPLE, middle]]], pen);
                     along::draw(svg, shape, [start + SAMPLE / 2.0, middle], pen.colour);
                 }
-                Sample::Joined(pen, shape) => {
+                Sample::Joined(pen, index) => {
                     svg.lines(&[vec![[start, middle], [start + SAMPLE, middle]]], pen);
-                    draw_joined(svg, shape, [start + SAMPLE / 2.0, middle], pen.colour);
+                    draw_joined(svg, index, [start + SAMPLE / 2.0, middle], pen.colour);
                 }
                 Sample::Open(shape) => draw_open(svg, shape, [start + SAMPLE / 2.0, middle]),
                 Sample::Filled(shape) => draw_filled(svg, shape, [start + SAMPLE / 2.0, middle]),

@@ -8,8 +8,10 @@ const MARKER: Pen = Pen {
     dashes: "",
 };
 
-/// Size of what is filled, as a part of that of a mark, and its edge.
+/// Sizes of what is filled, as parts of that of a mark, and its edge.
 const FILLED: f64 = 0.9;
+const LARGEST: f64 = 1.25;
+const STEP: f64 = 0.06;
 const EDGE: Pen = Pen {
     colour: "#ffffff",
     width: 1.0,
@@ -54,9 +56,10 @@ pub(super) fn draw_filled(svg: &mut Svg, shape: Shape, place: Pixel) {
     shape.draw(svg, place, FILLED, INK, EDGE);
 }
 
-/// Draws a point of a line, in its colour.
-pub(super) fn draw_joined(svg: &mut Svg, shape: Shape, place: Pixel, colour: &'static str) {
-    shape.draw(svg, place, FILLED, colour, EDGE);
+/// Draws a point of one of several lines, in its colour: the later the line, the smaller, so that points upon each other are seen.
+pub(super) fn draw_joined(svg: &mut Svg, index: usize, place: Pixel, colour: &'static str) {
+    let size = LARGEST - STEP * (index % 8) as f64;
+    Shape::of(index).draw(svg, place, size, colour, EDGE);
 }
 
 impl Shape {

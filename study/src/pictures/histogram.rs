@@ -33,7 +33,7 @@ pub(super) fn chart(source: &Source<'_>, picture: &Picture, cancel: &Cancel) -> 
         places.len(),
         hertzian::Model::of(&*study.system).name
     );
-    let mut chart = Chart::new(title).x(along(study)).y("variants");
+    let mut chart = Chart::new(title).x(along(study)).y("number of variants");
     let (Some(&low), Some(&high)) = (places.first(), places.last()) else {
         return Ok(chart.remark(format!("no variant has an event of kind {kind}")));
     };
