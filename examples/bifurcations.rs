@@ -37,7 +37,8 @@ pub fn main() -> Result<(), Error> {
     for (number, branch) in diagram.branches.iter().enumerate() {
         let cycles = branch.branch.points.len();
         println!(
-            "branch {number}: period {}, {cycles} orbits, {}",
+            "branch {}: period {}, {cycles} orbits, {}",
+            number + 1,
             branch.period(),
             branch.branch.stopped
         );

@@ -101,6 +101,7 @@ pub fn show(options: &Options) -> Result<Ended, Failed> {
             // Writing to a string does not fail.
             let _ = match read.len() {
                 0 => writeln!(summary, "{}: no branch", path.display()),
+                1 => writeln!(summary, "{}: branch {}", path.display(), all.len() + 1),
                 count => writeln!(
                     summary,
                     "{}: branches {} to {}",
@@ -118,10 +119,12 @@ pub fn show(options: &Options) -> Result<Ended, Failed> {
         None => 1..=count,
         Some(number) if (1..=count).contains(&number) => number..=number,
         Some(number) => {
-            return Err(Failed::new(format!(
-                "--branch {number}: there are {count} branches in {}",
-                listed(&options.files)
-            )));
+            let files = listed(&options.files);
+            let there = match count {
+                1 => format!("there is one branch in {files}"),
+                _ => format!("there are {count} branches in {files}"),
+            };
+            return Err(Failed::new(format!("--branch {number}: {there}")));
         }
     };
     let numbered: Vec<(usize, &Branch)> =

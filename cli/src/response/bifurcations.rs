@@ -286,10 +286,12 @@ impl Found {
         let left = self.diagram.omitted.iter();
         let deep = left.filter(|omitted| deep(&omitted.reason)).count();
         if deep > 0 {
-            writeln!(
-                text,
-                "deeper     {deep} branches begin beyond the depth asked for"
-            )?;
+            let begin = if deep == 1 {
+                "branch begins"
+            } else {
+                "branches begin"
+            };
+            writeln!(text, "deeper     {deep} {begin} beyond the depth asked for")?;
         }
         for omitted in &self.diagram.omitted {
             let reason = &omitted.reason;

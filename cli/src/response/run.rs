@@ -141,6 +141,7 @@ pub fn run(
     let mut warnings = remarks_on(&branches[0], &*model);
     warnings.extend(note);
     warnings.extend(windings(&branches));
+    warnings.extend(laborious(options, &branches));
     let solutions = solutions_at(options, &branches, &mut warnings);
     let missing = panels::write(options, &branches, &solutions)?;
     let all_panels = missing.is_empty();
@@ -272,6 +273,28 @@ pub(crate) fn windings<'b>(
 ) -> impl Iterator<Item = String> {
     let windings = branches.into_iter().filter_map(Branch::winding);
     windings.map(|winding| winding.to_string())
+}
+
+/// Unknowns of the balance from which on methods without harmonics are quicker wherever it was measured.
+const LABORIOUS: usize = 1000;
+
+/// Where the balance takes so many harmonics that another method is the better one.
+fn laborious(options: &Options, branches: &[Branch]) -> Option<String> {
+    if options.method() != By::Balance {
+        return None;
+    }
+    let points = branches.iter().flat_map(|branch| &branch.points);
+    let mut unknowns: Vec<usize> = points
+        .map(|point| point.orbit.coordinates() * (2 * point.orbit.harmonics() + 1))
+        .collect();
+    unknowns.sort_unstable();
+    let median = *unknowns.get(unknowns.len() / 2)?;
+    (median >= LABORIOUS).then(|| {
+        format!(
+            "the balance takes {median} unknowns at most orbits, which is slow: --by shooting and --by contact-equation find the same \
+             orbits without harmonics"
+        )
+    })
 }
 
 /// What is unusual about the model, at the frequency where the branch begins.

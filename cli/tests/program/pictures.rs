@@ -58,7 +58,7 @@ fn files_of_several_values_are_drawn_in_one_chart() {
     });
     let show = ["show", &files[2], &files[0], &files[1], "--svg", &svg];
     let said = done(&show);
-    assert!(said.contains("c.json: branches 1 to 1"), "{said}");
+    assert!(said.contains("c.json: branch 1\n"), "{said}");
     let read = || std::fs::read_to_string(&svg).expect("a picture");
     let picture = read();
     for part in [

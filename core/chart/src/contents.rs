@@ -44,6 +44,8 @@ pub(super) struct Contents {
     /// Points that are letters.
     pub(super) letters: Vec<Letters>,
     clouds: Vec<Dots>,
+    /// Names, and those that have found their place.
+    named: Vec<Named>,
     notes: Vec<Placed>,
     /// Everything is covered by coloured cells.
     covered: Option<Rectangle>,
@@ -96,6 +98,7 @@ impl Contents {
             clouds: clouds
                 .map(|cloud| Dots::of(cloud.points.iter().filter_map(place)))
                 .collect(),
+            named: Vec::new(),
             notes: Vec::new(),
             covered: chart.raster.is_some().then_some(plot.frame),
         };
@@ -106,9 +109,16 @@ impl Contents {
         };
         let notes = chart.notes.iter().filter_map(|note| named(note, true));
         let texts = chart.texts.iter().filter_map(|text| named(text, false));
-        let notes = notes.chain(texts).chain(counts).collect();
-        contents.notes = note::place(notes, &plot.frame, &contents.everything());
+        contents.named = notes.chain(texts).chain(counts).collect();
         contents
+    }
+
+    /// Finds places for names, where they cover neither what is drawn nor a legend: these can be anywhere around their points, and a legend is
+    /// large.
+    pub(super) fn place_names(&mut self, frame: &Rectangle, legend: &Rectangle) {
+        let mut taken = self.everything();
+        taken.extend(legend.scanned());
+        self.notes = note::place(std::mem::take(&mut self.named), frame, &taken);
     }
 
     /// Shapes along the curves, where there are several of different styles.
@@ -127,7 +137,7 @@ impl Contents {
         shapes.collect()
     }
 
-    /// All lines, and each marker as a line of one point.
+    /// All lines, and each marker and each point that has a name as a line of one point.
     pub(super) fn everything(&self) -> Vec<Vec<Pixel>> {
         let references = self.references.iter().flat_map(|(_, lines)| lines);
         let runs = self.runs.iter().flat_map(|(_, lines)| lines);
@@ -146,7 +156,7 @@ impl Contents {
             .chain(markers.map(|&pixel| vec![pixel]))
             .chain(self.clouds.iter().flat_map(Dots::lines))
             .chain(covered)
-            .chain(self.notes.iter().flat_map(Placed::lines))
+            .chain(self.named.iter().map(|named| vec![named.point]))
             .chain(self.bars.iter().flat_map(bars::Drawn::lines))
             .collect()
     }

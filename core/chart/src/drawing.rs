@@ -88,6 +88,7 @@ impl Laid {
             let left = plot.frame.right() + MARGIN;
             legend.at(left, plot.frame.top)
         });
+        contents.place_names(&plot.frame, &place);
         Self {
             plot,
             contents,

@@ -111,13 +111,6 @@ fn beside([x, y]: Pixel, [width, height]: [f64; 2], [u, v]: [f64; 2], distance: 
 }
 
 impl Placed {
-    /// What a legend must not cover.
-    pub(super) fn lines(&self) -> Vec<Vec<Pixel>> {
-        let mut lines = self.room.scanned();
-        lines.push(vec![self.of.point]);
-        lines
-    }
-
     pub(super) fn draw(&self, svg: &mut Svg) {
         let Self { of, room, far } = self;
         let point = of.point;

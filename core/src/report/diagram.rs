@@ -1,6 +1,6 @@
 //! The chart of a diagram.
 
-use hertzian_chart::Chart;
+use hertzian_chart::{Chart, Note};
 
 use crate::bifurcation::diagram::{Diagram, DiagramBranch};
 use crate::error::Error;
@@ -9,6 +9,9 @@ use crate::report::drawn::Drawn;
 use crate::report::labels::Labels;
 use crate::report::picture;
 use crate::report::view::View;
+
+/// Of so many branches the numbers are written beside them; more would cover each other.
+const NAMED: usize = 8;
 
 impl Diagram {
     /// What [leads](crate::Branch::leading) on the first branch over what is varied, one curve for each period: stable solid, unstable dashed,
@@ -43,14 +46,29 @@ impl Diagram {
             .collect()
     }
 
-    /// One curve for each period.
+    /// One curve for each period, with the numbers of branches as what is said of them has it, from one on.
     fn put_together(&self, view: &View, drawn: &[Drawn<'_>]) -> Chart {
         let Some(first) = drawn.first() else {
             return Chart::default();
         };
         let periods = self.branches.iter().map(DiagramBranch::period);
         let names: Vec<String> = periods.map(|period| format!("period {period}")).collect();
-        picture::chart_of(view, &Labels::of(&first.seen), drawn, &names)
+        let chart = picture::chart_of(view, &Labels::of(&first.seen), drawn, &names);
+        if !(2..=NAMED).contains(&drawn.len()) {
+            return chart;
+        }
+        drawn
+            .iter()
+            .enumerate()
+            .fold(chart, |chart, (number, drawn)| {
+                let known = |place: &&[f64; 2]| place.iter().all(|u| u.is_finite());
+                let places: Vec<&[f64; 2]> = drawn.points(0).iter().filter(known).collect();
+                let Some(&&point) = places.get(places.len() / 2) else {
+                    return chart;
+                };
+                let label = format!("branch {}", number + 1);
+                chart.text(Note { label, point })
+            })
     }
 
     /// Draws the [`chart`](Self::chart) as an SVG file.

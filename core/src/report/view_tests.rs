@@ -149,7 +149,7 @@ fn events_are_marked_by_choice_and_the_others_counted() {
     assert!(all.contains(legend) && !all.contains("not marked"));
     let view = View::new().events([EventKind::PeriodDoubling]);
     let none = branch.chart_of(&view).unwrap().to_svg();
-    assert!(!none.contains(legend) && none.contains("not marked: 2 folds\""));
+    assert!(!none.contains(legend) && none.contains("\"not marked: 2 folds; plain numbers"));
     let mut one = branch.clone();
     one.events.truncate(1);
     let fold = one.events[0].clone();

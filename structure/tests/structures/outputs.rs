@@ -1,9 +1,11 @@
 //! Displacements, rates and accelerations along directions, and what the reduction changes of each.
 
+use std::sync::Arc;
+
 use hertzian::structure::parameter;
 use hertzian::{FrequencyResponse, Shooting};
 use hertzian_structure::{
-    Damping, Direction, Load, OutputKind, Reduction, SparseMatrix, SparseStructure,
+    Damping, Direction, Load, OutputKind, Reduction, SparseContact, SparseMatrix, SparseStructure,
 };
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -119,5 +121,76 @@ fn the_error_of_every_kind_is_stated() {
             );
             exact *= omega;
         }
+    }
+}
+
+hertzian::law! {
+    /// An elastic stop.
+    Stop(gap, k >= 0) { gap > 0 => k*gap, else => 0 }
+}
+
+/// Two masses of which the second meets a stop, with as many vectors as coordinates: extremes of every kind are those that the method of Kutta (1901)
+/// settles to on the equations as they are, `M q'' + C q' + K q + e2 k max(q2 - d, 0) = e1 F cos(w t)`.
+#[test]
+fn with_a_contact_every_kind_is_that_of_the_motion() {
+    let two = |x: [f64; 4]| {
+        let places = [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().zip(x);
+        SparseMatrix::from_triplets(2, 2, places.map(|((i, j), x)| (i, j, x))).unwrap()
+    };
+    let structure = SparseStructure::new(two([2.0, 0.0, 0.0, 1.0]), two([5.0, -2.0, -2.0, 3.0]));
+    let structure = structure.damping(Damping::Rayleigh {
+        mass: 0.2,
+        stiffness: 0.0,
+    });
+    let stop = SparseContact::new("stop", Arc::new(Stop), Direction::at(1));
+    let stop = stop.arguments([4.0]).offset(0.3);
+    let structure = structure.contact(stop);
+    let along = Direction::weighted([(0, 1.0), (1, -0.5)]);
+    let structure = read(structure, 0, &along);
+    let (omega, steps, periods) = (1.3, 4000, 60);
+
+    let slope = |t: f64, [q, p, v, w]: [f64; 4]| {
+        let force = 4.0 * (p - 0.3).max(0.0);
+        let first = 0.5 * ((omega * t).cos() - 0.4 * v - 5.0 * q + 2.0 * p);
+        [v, w, first, 2.0 * q - 3.0 * p - 0.2 * w - force]
+    };
+    let length = std::f64::consts::TAU / omega / f64::from(steps);
+    let mut state = [0.0; 4];
+    let mut extremes = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    let mut highest = 0.0_f64;
+    for step in 0..steps * periods {
+        let t = length * f64::from(step);
+        let moved = |by: f64, slope: [f64; 4]| {
+            let mut moved = state;
+            moved.iter_mut().zip(slope).for_each(|(x, v)| *x += by * v);
+            moved
+        };
+        let a = slope(t, state);
+        let b = slope(t + 0.5 * length, moved(0.5 * length, a));
+        let c = slope(t + 0.5 * length, moved(0.5 * length, b));
+        let d = slope(t + length, moved(length, c));
+        if step >= steps * (periods - 1) {
+            highest = highest.max(state[1]);
+            let kinds = [
+                state[0] - 0.5 * state[1],
+                a[0] - 0.5 * a[1],
+                a[2] - 0.5 * a[3],
+            ];
+            for ([low, high], value) in extremes.iter_mut().zip(kinds) {
+                (*low, *high) = (low.min(value), high.max(value));
+            }
+        }
+        let mean = [0, 1, 2, 3].map(|i| (a[i] + 2.0 * (b[i] + c[i]) + d[i]) / 6.0);
+        state = moved(length, mean);
+    }
+    // The stop is met, else this would be the test of two masses above.
+    assert!(highest > 0.4, "{highest}");
+    let found = peaks(&structure, &Reduction::to(2.4), omega);
+    for ([peak, error], [low, high]) in found.into_iter().zip(extremes) {
+        assert!(error < 1e-9, "{error}");
+        assert!(
+            (peak / (high - low) - 1.0).abs() < 1e-5,
+            "{peak}, {low} to {high}"
+        );
     }
 }

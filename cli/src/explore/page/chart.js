@@ -106,6 +106,20 @@ function horizontal(curve) {
 // A model that declares no unit at all is one of numbers.
 const bare = (curve, unit) => (unit || curve.unit ? '' : ', dimensionless as declared');
 
+// Names of branches, where there are several, as what is said of them has it: each in the middle of its branch, as far as that is seen.
+function namesOf(branches, { px, py, box }) {
+  const names = svg('g', { id: 'names' });
+  if (branches.length < 2) return names;
+  branches.forEach((branch, number) => {
+    const places = branch.runs.flatMap((run) => Array.from({ length: run.places.length / 2 }, (_, i) => [run.places[2 * i], run.places[2 * i + 1]]));
+    const known = places.filter((place) => !place.includes(null)).map(([value, size]) => [px(value), py(size)]);
+    const seen = known.filter(([x, y]) => x > box.left && x < box.right && y > box.top && y < box.bottom);
+    const middle = seen[Math.floor(seen.length / 2)];
+    if (middle) names.append(svg('text', { class: 'name', x: middle[0], y: middle[1] - 8, text: `branch ${number + 1}` }));
+  });
+  return names;
+}
+
 // Draws everything anew.
 export function draw({ dragging = false } = {}) {
   const target = svgOf();
@@ -173,7 +187,7 @@ export function draw({ dragging = false } = {}) {
   for (const { places, values: sizes } of seen) places.forEach((place, i) => {
     if (Number.isFinite(py(sizes[i]))) values.append(svg('circle', { class: 'measured', cx: px(place), cy: py(sizes[i]), r: 3 }));
   });
-  target.replaceChildren(clip, ...on.parts, shadows, pins, curves, values, marks, here, svg('circle', { id: 'hover', class: 'hover', r: 3, cx: -9, cy: -9 }));
+  target.replaceChildren(clip, ...on.parts, shadows, pins, curves, namesOf(curve.branches, on), values, marks, here, svg('circle', { id: 'hover', class: 'hover', r: 3, cx: -9, cy: -9 }));
   target.setAttribute('aria-label', `${curve.label} over ${curve.varied}: ${curve.events.length} events, ${curve.events.map((event) => event.said).join('; ')}`);
 }
 

@@ -24,7 +24,7 @@ export function showFound(curve, pick) {
   showCommand();
 }
 
-// The command that makes the same picture.
+// The command that makes the same picture, and says the same of the motions that are shown.
 export function showCommand() {
   const scale = state.yscale !== 'linear' || state.depth !== null ? ` --scale ${state.yscale}` : '';
   if (!chart.curve) return;
@@ -32,7 +32,8 @@ export function showCommand() {
   const file = session.models.find((model) => model.text === state.text)?.name;
   const quoted = /^[\w./-]+$/.test(file ?? '') ? file : `'${file?.replaceAll("'", "'\\''")}'`;
   const command = file === undefined ? chart.curve.command : chart.curve.command.replace(' --model FILE', () => ` --model ${quoted}`);
-  byId('command').value = command + scale;
+  const at = state.at === null ? '' : ` --at ${state.at}`;
+  byId('command').value = command + scale + at;
 }
 
 // Where the curve is highest, as exactly as it is drawn.

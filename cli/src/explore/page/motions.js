@@ -2,6 +2,7 @@
 
 import { chart, draw } from './chart.js';
 import { byId, el } from './dom.js';
+import { showCommand } from './found.js';
 import { ask } from './net.js';
 import * as orbit from './orbit.js';
 import { note, progress, report, request, session, status, time } from './session.js';
@@ -37,6 +38,7 @@ export async function pick(value, size = null) {
   if (size !== null) wantedSize = size;
   keep(session.models);
   draw();
+  showCommand();
   const wanted = JSON.stringify(request());
   try {
     const answer = await ask('orbits', { orbits: { ...request(), at: value } }, progress);
