@@ -140,8 +140,7 @@ pub fn run(
     let mut branches: Vec<Branch> = covered.map(|found| found.branch.clone()).collect();
     let mut warnings = remarks_on(&branches[0], &*model);
     warnings.extend(note);
-    warnings.extend(windings(&branches));
-    warnings.extend(laborious(options, &branches));
+    warnings.extend(windings(&branches).chain(laborious(options, &branches)));
     let solutions = solutions_at(options, &branches, &mut warnings);
     let missing = panels::write(options, &branches, &solutions)?;
     let all_panels = missing.is_empty();

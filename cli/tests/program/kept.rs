@@ -130,7 +130,7 @@ fn a_file_is_shown_without_computing() {
             .expect("a picture")
             .contains("<svg")
     );
-    assert!(refused(&["show", &json, "--branch", "2"]).contains("there are 1 branches"));
+    assert!(refused(&["show", &json, "--branch", "2"]).contains("there is one branch in"));
     std::fs::write(&csv, "{\"version\": 1, \"branches\": []}").expect("written");
     assert!(refused(&["show", &csv]).contains("is of version 1, and files of version 2 are read"));
 }

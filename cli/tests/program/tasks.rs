@@ -237,7 +237,7 @@ fn a_bolted_joint() {
     }
     // In the metres of the declaration the part moves by thousandths: the axis has the prefix.
     let command =
-        "response --model model.txt --from 2000 --to 3000 --one-branch --plot x:p2p --axis hertz";
+        "response --model model.txt --from 2000 --to 3000 --one-branch --plot x:p2p --axis hz";
     run(&folder, command);
     let picture = std::fs::read_to_string(folder.0.join("response.svg")).expect("a picture");
     assert!(picture.contains("aria-label=\"peak-to-peak of x [mm]\""));

@@ -1,5 +1,7 @@
 //! Pieces of curves that are too short for their line to say what they are: most of such a piece is below marks.
 
+use std::fmt::Write;
+
 use super::Line;
 use super::drawing::Plot;
 use super::svg::Pixel;
@@ -74,11 +76,12 @@ pub(super) fn said(pieces: &[Piece<'_>], plot: &Plot) -> Option<String> {
             text += " ";
         }
         label = Some(*own);
-        text += &format!("{} between {from} and {to}", line.name());
+        // Writing to a string does not fail.
+        let _ = write!(text, "{} between {from} and {to}", line.name());
     }
     let more = pieces.len().saturating_sub(LISTED);
     if more > 0 {
-        text += &format!(" and {more} more");
+        let _ = write!(text, " and {more} more");
     }
     Some(text).filter(|text| !text.is_empty())
 }

@@ -161,7 +161,7 @@ fn events_are_marked_by_choice_and_the_others_counted() {
         one.events.extend([event.clone(), event]);
     }
     let counted = one.chart_of(&view).unwrap().to_svg();
-    let expected = "not marked: 1 fold, 2 branch points, 2 Neimark-Sacker bifurcations\"";
+    let expected = "not marked: 1 fold, 2 branch points, 2 Neimark-Sacker bifurcations;";
     assert!(counted.contains(expected));
     assert_eq!("fold".parse(), Ok(EventKind::Fold));
     let error = "folds".parse::<EventKind>().unwrap_err().to_string();
