@@ -274,11 +274,11 @@ mod tests {
     #[test]
     fn values_have_the_digits_that_a_chart_shows() {
         let linear = Range::between(Scale::Linear, [0.0, 2.5]);
-        assert_eq!(linear.written(-1.23456, 0), "−1.235");
-        assert_eq!(linear.written(1.23456, -3), "1235");
+        assert_eq!(linear.written(-1.234_56, 0), "−1.235");
+        assert_eq!(linear.written(1.234_56, -3), "1235");
         let decades = Range::between(Scale::Logarithmic, [1e-2, 1e2]);
-        assert_eq!(decades.written(0.0123456, 0), "0.0123");
-        assert_eq!(decades.written(98.7654, 0), "98.8");
+        assert_eq!(decades.written(0.012_345_6, 0), "0.0123");
+        assert_eq!(decades.written(98.765_4, 0), "98.8");
     }
 
     #[test]
