@@ -22,8 +22,6 @@ const OTHERS: [(Fate, &str, Colour); 5] = [
 ];
 /// Periodic orbits that get a colour of their own; the palette has fifteen, with the other classes.
 const COLOURED: usize = 9;
-/// Orbits whose points are marked.
-const MARKED: usize = 6;
 
 /// Computes the basins.
 ///
@@ -183,7 +181,7 @@ fn chart(task: &Task<'_>, grid: &Grid, basins: &Basins) -> Result<Chart, Failure
             cells: basins.fates.iter().map(|fate| class(fate) as u8).collect(),
             classes,
         });
-    for (index, attractor) in basins.attractors.iter().enumerate().take(MARKED) {
+    for (index, attractor) in basins.attractors.iter().enumerate().take(shown) {
         let entry = |state: &Vec<f64>| [state[columns.entry], state[rows.entry]];
         let points: Vec<[f64; 2]> = attractor.points.iter().map(entry).collect();
         chart = chart.letters(Series::new(numbered(&basins.attractors, index), points));

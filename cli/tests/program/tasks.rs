@@ -20,6 +20,12 @@ fn said(folder: &Folder, model: &str, command: &str) -> String {
 
 /// What the program says in a folder.
 fn run(folder: &Folder, command: &str) -> String {
+    let [said, _] = told(folder, command);
+    said
+}
+
+/// The same, and what it complains of.
+fn told(folder: &Folder, command: &str) -> [String; 2] {
     let mut program = Command::new(env!("CARGO_BIN_EXE_hertzian"));
     program
         .current_dir(&folder.0)
@@ -27,7 +33,7 @@ fn run(folder: &Folder, command: &str) -> String {
     let done = program.output().expect("the program");
     let error = String::from_utf8_lossy(&done.stderr).into_owned();
     assert_eq!(done.status.code(), Some(0), "{command}: {error}");
-    String::from_utf8(done.stdout).expect("text")
+    [String::from_utf8(done.stdout).expect("text"), error]
 }
 
 /// Rows of the table: the number of the orbit, what is said of it, of what the number is, the number.
@@ -196,6 +202,12 @@ fn balls() {
         --at 0.5 --plot y:max,x:max,ball_1:max";
     let text = said(&folder, "ball_bearing.txt", command);
     are_those(&text, "ball_bearing", &["y:max", "x:max", "ball:max"], 1e-6);
+    // The cage turns once in five periods of the excitation, and orbits take as many harmonics more.
+    let [_, complaint] = told(&folder, command);
+    let advice = "--by shooting and --by contact-equation find the same orbits without harmonics";
+    assert!(complaint.contains(advice), "{complaint}");
+    let [_, complaint] = told(&folder, &format!("{command} --by contact-equation"));
+    assert_eq!(complaint, "");
 }
 
 /// Both sides find the same three motions, and say which are stable. Forces are in units of the lever, 2 N/m.
