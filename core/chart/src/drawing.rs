@@ -15,6 +15,8 @@ pub(super) const HEIGHT: f64 = 600.0;
 const MARGIN: f64 = 18.0;
 /// Sizes of letters.
 const TITLE: f64 = 19.0;
+/// A title that had to be smaller than this part of its size has two lines.
+const LEGIBLE: f64 = 0.8;
 const LABEL: f64 = 16.0;
 const TICK: f64 = 14.0;
 const REMARK: f64 = 13.0;
@@ -50,9 +52,11 @@ pub(super) fn draw(chart: &Chart) -> String {
         place,
     } = laid;
     let mut svg = Svg::new(WIDTH, HEIGHT, &chart.title);
-    let size = fitted(&chart.title, TITLE, WIDTH - 2.0 * MARGIN);
-    let baseline = MARGIN + 0.8 * TITLE;
-    svg.text([WIDTH / 2.0, baseline], size, Anchor::Middle, &chart.title);
+    for (row, line) in title_lines(&chart.title).into_iter().enumerate() {
+        let size = fitted(line, TITLE, WIDTH - 2.0 * MARGIN);
+        let baseline = MARGIN + 0.8 * TITLE + 1.2 * TITLE * row as f64;
+        svg.text([WIDTH / 2.0, baseline], size, Anchor::Middle, line);
+    }
     if let Some(raster) = &chart.raster {
         raster.draw(&mut svg, &plot.frame);
     }
@@ -111,6 +115,21 @@ fn outside(chart: &Chart) -> Option<String> {
     });
     let parts: Vec<String> = parts.collect();
     (!parts.is_empty()).then(|| format!("outside of the frame: {}", parts.join(", ")))
+}
+
+/// A title as one line, or as two where one had to be small: broken between two of its values, with the longer line as short as can be.
+fn title_lines(title: &str) -> Vec<&str> {
+    let room = WIDTH - 2.0 * MARGIN;
+    if fitted(title, TITLE, room) >= LEGIBLE * TITLE {
+        return vec![title];
+    }
+    let breaks = [": ", ", ", "; "].into_iter().flat_map(|mark| {
+        let places = title.match_indices(mark);
+        places.map(|(place, mark)| title.split_at(place + mark.len()))
+    });
+    let length = |(one, other): &(&str, &str)| width_of(one, TITLE).max(width_of(other, TITLE));
+    let best = breaks.min_by(|a, b| length(a).total_cmp(&length(b)));
+    best.map_or_else(|| vec![title], |(one, other)| vec![one.trim_end(), other])
 }
 
 /// Remarks as lines below the chart: short ones share a line.
@@ -250,7 +269,8 @@ impl Plot {
             ruler.labelled.iter().map(width).fold(0.0, f64::max)
         };
         let left = MARGIN + 1.3 * LABEL + widest(&y) + 12.0;
-        let top = MARGIN + 1.2 * TITLE + 10.0;
+        let rows = title_lines(&chart.title).len() as f64;
+        let top = MARGIN + 1.2 * TITLE * rows + 10.0;
         let right = (MARGIN + free).max(MARGIN + widest(&x) / 2.0);
         let bottom = MARGIN + 1.2 * LABEL + 1.2 * TICK + 16.0 + below;
         let frame = Rectangle {

@@ -81,6 +81,26 @@ fn a_response_has_all_its_parts() {
 }
 
 #[test]
+fn a_long_title_has_two_lines() {
+    let values: Vec<String> = (1..=16).map(|k| format!("value {k} = {k} N/m")).collect();
+    let title = format!("Machine: {}", values.join(", "));
+    let svg = Chart::new(&title).to_svg();
+    let [one, other] = [&values[..8], &values[8..]].map(|values| values.join(", "));
+    assert!(svg.contains(&format!("<title>{title}</title>")));
+    assert!(
+        svg.contains(&format!("aria-label=\"Machine: {one},\"")),
+        "{svg}"
+    );
+    assert!(svg.contains(&format!("aria-label=\"{other}\"")));
+    let word = "a".repeat(300);
+    assert!(
+        Chart::new(&word)
+            .to_svg()
+            .contains(&format!("aria-label=\"{word}\""))
+    );
+}
+
+#[test]
 fn an_empty_chart_is_a_frame() {
     let svg = Chart::default().to_svg();
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));

@@ -61,13 +61,11 @@ impl Diagram {
             .iter()
             .enumerate()
             .fold(chart, |chart, (number, drawn)| {
-                let known = |place: &&[f64; 2]| place.iter().all(|u| u.is_finite());
-                let places: Vec<&[f64; 2]> = drawn.points(0).iter().filter(known).collect();
-                let Some(&&point) = places.get(places.len() / 2) else {
-                    return chart;
-                };
                 let label = format!("branch {}", number + 1);
-                chart.text(Note { label, point })
+                match drawn.clear_place() {
+                    Some(point) => chart.text(Note { label, point }),
+                    None => chart,
+                }
             })
     }
 

@@ -95,6 +95,34 @@ impl<'b> Drawn<'b> {
         &self.lines[line].points
     }
 
+    /// The place on the first line that is farthest from events and from its ends, in parts of what the line takes of both axes.
+    pub(crate) fn clear_place(&self) -> Option<[f64; 2]> {
+        let Places { points, events } = self.lines.first()?;
+        let is_known = |place: &&[f64; 2]| place.iter().all(|u| u.is_finite());
+        let known: Vec<[f64; 2]> = points.iter().filter(is_known).copied().collect();
+        let extent = |k: usize| {
+            let values = known.iter().map(|place| place[k]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), u| {
+                (low.min(u), high.max(u))
+            });
+            (high - low).max(f64::MIN_POSITIVE)
+        };
+        let extents = [extent(0), extent(1)];
+        let apart = |a: &[f64; 2], b: &[f64; 2]| {
+            let [x, y] = [0, 1].map(|k| (a[k] - b[k]) / extents[k]);
+            x.hypot(y)
+        };
+        let distance = |place: &[f64; 2]| {
+            let others = events.iter().chain(known.first()).chain(known.last());
+            let distances = others.map(|other| apart(place, other));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        let farthest = known
+            .iter()
+            .max_by(|a, b| distance(a).total_cmp(&distance(b)));
+        farthest.copied()
+    }
+
     /// All lines with other values, as higher ones.
     pub(crate) fn raised(mut self, by: impl Fn(f64) -> f64) -> Self {
         let places = self.lines.iter_mut();
