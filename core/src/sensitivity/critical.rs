@@ -27,7 +27,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::change;
 use super::cycle::{Cycle, Evaluated};
 use super::error::SensitivityError;
 use super::moments::Along;
@@ -151,29 +150,32 @@ impl Critical {
         null.is_some_and(|(left, _)| left.dot(by).abs() > LEAVES * by.norm())
     }
 
-    /// `Re(mu'/mu)` by one of the variables, and its error; no numbers where it breaks the symmetry.
-    fn slope(
+    /// `Re(mu'/mu)` by each of the variables, and its error; no numbers where one breaks the symmetry.
+    fn slopes(
         &self,
         cycle: &mut Cycle,
         states: &[f64],
         variables: &[Variable],
-        index: usize,
-    ) -> Result<(f64, f64), SensitivityError> {
-        if self.is_unfolded_by(index) {
-            return Ok((f64::NAN, f64::NAN));
-        }
-        let jacobian = &self.evaluated.jacobian;
-        let right = -&self.evaluated.by[index];
-        let mut weights = vec![0.0; variables.len()];
-        weights[index] = 1.0;
-        let along = Along {
-            states: solved(jacobian, &right, self.null.as_ref())?,
-            weights,
-        };
-        let change = change::along(cycle, states, variables, &along)?;
-        let (slope, error) = self.multiplier.slope(&change);
+    ) -> Result<Vec<(f64, f64)>, SensitivityError> {
+        let matrices = cycle.matrices(&self.evaluated);
+        let bend = self.multiplier.bend(cycle, states, variables, &matrices)?;
         let value = self.multiplier.value;
-        Ok(((slope / value).re, error / value.norm()))
+        let slope = |index: usize| {
+            if self.is_unfolded_by(index) {
+                return Ok((f64::NAN, f64::NAN));
+            }
+            let jacobian = &self.evaluated.jacobian;
+            let right = -&self.evaluated.by[index];
+            let mut weights = vec![0.0; variables.len()];
+            weights[index] = 1.0;
+            let along = Along {
+                states: solved(jacobian, &right, self.null.as_ref())?,
+                weights,
+            };
+            let (slope, error) = bend.slope(&along);
+            Ok(((slope / value).re, error / value.norm()))
+        };
+        (0..variables.len()).map(slope).collect()
     }
 }
 
@@ -186,7 +188,8 @@ fn nearest(
     evaluated: &Evaluated,
     crosses: Crosses,
 ) -> Result<Multiplier, SensitivityError> {
-    let all = multipliers::of(&cycle.monodromy(evaluated)).into_iter();
+    let matrix = multipliers::product(&cycle.matrices(evaluated));
+    let all = multipliers::of(&matrix).into_iter();
     let nearest = all.min_by(|a, b| crosses.distance(a).total_cmp(&crosses.distance(b)));
     let found = nearest.filter(|found| crosses.distance(found) < BESIDE);
     let found = found.ok_or(SensitivityError::NoCrossing)?;
@@ -216,7 +219,7 @@ pub(super) fn crossing(
     for _ in 0..STEPS {
         cycle.set(varied, value)?;
         let critical = Critical::of(cycle, &mut states, crosses, &[varied])?;
-        let (slope, _) = critical.slope(cycle, &states, &[varied], 0)?;
+        let (slope, _) = critical.slopes(cycle, &states, &[varied])?[0];
         let step = -critical.multiplier.value.norm().ln() / slope;
         let length = (step / value).abs();
         if length <= LAST || (length <= NEAR && length >= 0.5 * before) {
@@ -244,8 +247,7 @@ fn moves(
         .chain(variables.iter().copied())
         .collect();
     let critical = Critical::of(cycle, &mut states, crosses, &all)?;
-    let slopes = (0..all.len()).map(|index| critical.slope(cycle, &states, &all, index));
-    let slopes = slopes.collect::<Result<Vec<_>, _>>()?;
+    let slopes = critical.slopes(cycle, &states, &all)?;
     let (own, own_error) = slopes[0];
     let by = slopes[1..].iter().map(|(slope, _)| -slope / own).collect();
     let errors = slopes[1..].iter().map(|(slope, error)| {
@@ -304,16 +306,16 @@ pub(super) fn bends(
     }
     let mut last = still;
     last.states.copy_from(&null.1);
-    let change = change::along(cycle, &fold.states, variables, &last)?;
-    let (slope, slope_error) = multiplier.slope(&change);
+    let matrices = cycle.matrices(&evaluated);
+    let bend = multiplier.bend(cycle, &fold.states, variables, &matrices)?;
+    let (slope, slope_error) = bend.slope(&last);
     let mut along = Vec::with_capacity(variables.len());
     for (index, direction) in directions.iter().enumerate() {
         if index == own {
             along.push([0.0; 2]);
             continue;
         }
-        let change = change::along(cycle, &fold.states, variables, direction)?;
-        let (moved, error) = multiplier.slope(&change);
+        let (moved, error) = bend.slope(direction);
         let c = -moved.re / slope.re;
         along.push([c, (error + c.abs() * slope_error) / slope.re.abs()]);
     }

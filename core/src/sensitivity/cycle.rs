@@ -40,12 +40,26 @@ pub(super) struct Stop {
     pub(super) phase: f64,
 }
 
-/// The state at a stop, and its derivatives by the beginning of the segment and by variables.
+/// The state at a stop, and its derivatives by the beginning of the segment and then by variables.
 #[derive(Debug, Clone)]
 pub(super) struct AtStop {
     pub(super) state: Vec<f64>,
-    pub(super) columns: DMatrix<f64>,
-    pub(super) by: Vec<DVector<f64>>,
+    columns: DMatrix<f64>,
+}
+
+impl AtStop {
+    /// How the state moves with that at the beginning of the segment, and with variables by their weights.
+    pub(super) fn moved(&self, states: &[f64], weights: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut moved = vec![0.0; states.len()];
+        let times = states.iter().copied().chain(weights);
+        for (column, times) in self.columns.column_iter().zip(times) {
+            if times != 0.0 {
+                let both = moved.iter_mut().zip(column.iter());
+                both.for_each(|(sum, x)| *sum += times * x);
+            }
+        }
+        moved
+    }
 }
 
 /// The equations at states.
@@ -59,6 +73,7 @@ pub(super) struct Evaluated {
 
 /// The equations of orbits of one period, at values that can be changed.
 pub(super) struct Cycle {
+    pub(super) system: Arc<dyn System>,
     flow: Box<dyn Flow>,
     pub(super) coordinates: usize,
     /// In periods of the declaration.
@@ -94,6 +109,7 @@ impl Cycle {
             orbit.period
         };
         Ok(Self {
+            system: Arc::clone(system),
             flow,
             coordinates: orbit.coordinates,
             period: orbit.period,
@@ -212,83 +228,94 @@ impl Cycle {
         variables: &[Variable],
         stops: &[Stop],
     ) -> Result<Evaluated, FlowError> {
+        let order = self.order();
+        let mut at_stops = Vec::with_capacity(stops.len());
+        let mut phases = Vec::with_capacity(stops.len());
+        let mut evaluated = self.evaluate_by(states, variables, |flow, segment, motion| {
+            let inside = stops.iter().filter(|stop| stop.segment == segment);
+            phases.clear();
+            phases.extend(inside.map(|stop| stop.phase));
+            let Motion {
+                ends,
+                state,
+                tangent,
+            } = motion;
+            flow.advance_by(ends, &phases, state, tangent, &mut |_, state, columns| {
+                at_stops.push(AtStop {
+                    state: state.to_vec(),
+                    columns: DMatrix::from_column_slice(order, columns.len() / order, columns),
+                });
+            })
+        })?;
+        evaluated.stops = at_stops;
+        Ok(evaluated)
+    }
+
+    /// The same without stops; every stretch is shown with its segment.
+    ///
+    /// # Errors
+    /// As there.
+    pub(super) fn evaluate_seen(
+        &mut self,
+        states: &[f64],
+        variables: &[Variable],
+        see: &mut dyn FnMut(usize, &dyn Stretch),
+    ) -> Result<Evaluated, FlowError> {
+        self.evaluate_by(states, variables, |flow, segment, motion| {
+            let Motion {
+                ends: [from, to],
+                state,
+                tangent,
+            } = motion;
+            let mut show = |stretch: &dyn Stretch| see(segment, stretch);
+            flow.advance(from, to, state, Some(tangent), Some(&mut show))
+        })
+    }
+
+    fn evaluate_by(
+        &mut self,
+        states: &[f64],
+        variables: &[Variable],
+        mut advance: impl FnMut(&mut dyn Flow, usize, Motion<'_>) -> Result<(), FlowError>,
+    ) -> Result<Evaluated, FlowError> {
         let (order, n) = (self.order(), self.unknowns());
         let mut evaluated = Evaluated {
             residual: DVector::zeros(n),
             jacobian: DMatrix::zeros(n, n),
             by: vec![DVector::zeros(n); variables.len()],
-            stops: Vec::with_capacity(stops.len()),
+            stops: Vec::new(),
         };
         for segment in 0..self.segments {
             let (first, next) = (segment * order, (segment + 1) % self.segments * order);
-            let inside = stops.iter().filter(|stop| stop.segment == segment);
-            let phases: Vec<f64> = inside.map(|stop| stop.phase).collect();
-            let from = evaluated.stops.len();
-            for pass in 0..variables.len().max(1) {
-                let by = variables.get(pass).copied();
-                let mut tangent = if pass == 0 {
-                    Tangent::of_state(self.coordinates, by)
-                } else {
-                    Tangent {
-                        columns: vec![0.0; order],
-                        by,
-                    }
-                };
-                let mut state = states[first..][..order].to_vec();
-                self.pass(
-                    segment,
-                    &phases,
-                    &mut state,
-                    &mut tangent,
-                    |at, state, tangent| {
-                        note(&mut evaluated.stops, from + at, pass, order, state, tangent);
-                    },
-                )?;
-                let columns = &tangent.columns;
-                if pass == 0 {
-                    for i in 0..order {
-                        evaluated.residual[first + i] = state[i] - states[next + i];
-                        for j in 0..order {
-                            evaluated.jacobian[(first + i, first + j)] += columns[j * order + i];
-                        }
-                        evaluated.jacobian[(first + i, next + i)] -= 1.0;
-                    }
+            let mut tangent = Tangent::of_state(self.coordinates, variables.iter().copied());
+            let mut state = states[first..][..order].to_vec();
+            let motion = Motion {
+                ends: self.phases(segment),
+                state: &mut state,
+                tangent: &mut tangent,
+            };
+            advance(self.flow.as_mut(), segment, motion)?;
+            let mut columns = tangent.columns.chunks_exact(order);
+            for (j, column) in columns.by_ref().take(order).enumerate() {
+                for i in 0..order {
+                    evaluated.jacobian[(first + i, first + j)] += column[i];
                 }
-                if by.is_some() {
-                    let last = &columns[columns.len() - order..];
-                    evaluated.by[pass].as_mut_slice()[first..][..order].copy_from_slice(last);
-                }
+            }
+            for i in 0..order {
+                evaluated.residual[first + i] = state[i] - states[next + i];
+                evaluated.jacobian[(first + i, next + i)] -= 1.0;
+            }
+            for (by, column) in evaluated.by.iter_mut().zip(columns) {
+                by.as_mut_slice()[first..][..order].copy_from_slice(column);
             }
         }
         Ok(evaluated)
     }
 
-    /// Moves a state and a tangent over a segment, and shows them at phases in it.
-    fn pass(
-        &mut self,
-        segment: usize,
-        phases: &[f64],
-        state: &mut [f64],
-        tangent: &mut Tangent,
-        mut show: impl FnMut(usize, &[f64], &Tangent),
-    ) -> Result<(), FlowError> {
-        let [mut from, end] = self.phases(segment);
-        for (at, &phase) in phases.iter().enumerate() {
-            let to = phase.clamp(from, end);
-            if to > from {
-                self.flow.advance(from, to, state, Some(tangent), None)?;
-            }
-            show(at, state, tangent);
-            from = to;
-        }
-        self.flow.advance(from, end, state, Some(tangent), None)
-    }
-
-    /// The matrix over the period, in units of states.
-    pub(super) fn monodromy(&self, evaluated: &Evaluated) -> DMatrix<f64> {
+    /// The matrices over the segments, in units of states.
+    pub(super) fn matrices(&self, evaluated: &Evaluated) -> Vec<DMatrix<f64>> {
         let order = self.order();
-        let mut product = DMatrix::identity(order, order);
-        for segment in 0..self.segments {
+        let matrix = |segment: usize| {
             let first = segment * order;
             let own = evaluated.jacobian.view((first, first), (order, order));
             let mut own = own.into_owned();
@@ -296,19 +323,14 @@ impl Cycle {
                 // Its own beginning is the next one.
                 own += DMatrix::identity(order, order);
             }
-            product = own * product;
-        }
-        for i in 0..order {
-            for j in 0..order {
-                product[(i, j)] *= self.unit(j) / self.unit(i);
+            for i in 0..order {
+                for j in 0..order {
+                    own[(i, j)] *= self.unit(j) / self.unit(i);
+                }
             }
-        }
-        product
-    }
-
-    /// How often levels were crossed since the flow was made.
-    pub(super) fn switches(&self) -> usize {
-        self.flow.work().switches
+            own
+        };
+        (0..self.segments).map(matrix).collect()
     }
 
     /// What counts as one in an unknown: velocities count by the frequency.
@@ -419,25 +441,9 @@ impl Cycle {
     }
 }
 
-/// Keeps the state and the tangent of a pass at a stop.
-fn note(
-    stops: &mut Vec<AtStop>,
-    index: usize,
-    pass: usize,
-    order: usize,
-    state: &[f64],
-    tangent: &Tangent,
-) {
-    let columns = &tangent.columns;
-    if pass == 0 {
-        stops.push(AtStop {
-            state: state.to_vec(),
-            columns: DMatrix::from_column_slice(order, order, &columns[..order * order]),
-            by: Vec::new(),
-        });
-    }
-    if tangent.by.is_some() {
-        let last = &columns[columns.len() - order..];
-        stops[index].by.push(DVector::from_column_slice(last));
-    }
+/// What is moved over a segment.
+struct Motion<'m> {
+    ends: [f64; 2],
+    state: &'m mut [f64],
+    tangent: &'m mut Tangent,
 }

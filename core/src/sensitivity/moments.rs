@@ -15,7 +15,7 @@
 
 use nalgebra::DVector;
 
-use super::cycle::{AtStop, Cycle, Evaluated, Stop};
+use super::cycle::{Cycle, Evaluated, Stop};
 use super::scan::{End, Extreme, Scan};
 use super::slopes::{By, Direction, Slopes};
 use crate::numeric::fourier::gauss;
@@ -245,16 +245,10 @@ impl<'r> Reader<'r> {
 
     /// How the state at a stop moves along a direction.
     fn moved(&self, stop: usize, direction: usize) -> Vec<f64> {
-        let AtStop { columns, by, .. } = &self.evaluated.stops[stop];
         let along = &self.directions[direction];
         let first = self.places.stops[stop].segment * self.order;
-        let mut moved = columns * along.states.rows(first, self.order);
-        for (column, &weight) in by.iter().zip(&along.weights) {
-            if weight != 0.0 {
-                moved.axpy(weight, column, 1.0);
-            }
-        }
-        moved.as_slice().to_vec()
+        let begin = &along.states.as_slice()[first..][..self.order];
+        self.evaluated.stops[stop].moved(begin, along.weights.iter().copied())
     }
 
     /// (1)

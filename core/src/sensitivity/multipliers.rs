@@ -3,19 +3,25 @@
 //! With the matrix `M` over the period, `M v = mu v` and `w M = mu w`,
 //!
 //! ```text
-//! mu' = w M' v / w v.                                                                                          (1)
+//! mu' = w M' v / w v,        M' v = sum_i M_m .. M_(i+1) X_i (s_i', p')                                        (1)
 //! ```
 //!
-//! Where a multiplier is repeated, `w v` vanishes, or the derivative is not one of a single number: it does not exist.
+//! where `M_i` are the matrices over the segments, and `X_i` is (1) of [`change`](super::change) along `v_i = M_(i-1) .. M_1 v`.
+//! Where a multiplier is repeated, `w v` vanishes, or the derivative is not one of a single number: it does not exist. One that the flow does not
+//! tell from another has none that could be known.
 //!
 //! Source: Seyranian and Mailybaev (2003), Multiparameter Stability Theory with Mechanical Applications, chapters 2 and 9.
 
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
-use super::change::Change;
+use super::change::{self, Change};
+use super::cycle::Cycle;
+use super::error::SensitivityError;
+use super::moments::Along;
 use super::{Derivative, Measured, Missing, Sensitivities};
 use crate::numeric::spectrum::ITERATIONS;
 use crate::numeric::triangular::eigenvectors;
+use crate::system::Variable;
 
 /// Multipliers that differ by less than this part of their size are one.
 const SAME: f64 = 1e-7;
@@ -89,49 +95,158 @@ fn vectors(matrix: &DMatrix<f64>) -> Option<Vec<Pair>> {
 impl Multiplier {
     /// Whether another one is the same, so that it has no derivative.
     pub(super) fn is_repeated(&self) -> bool {
-        self.gap <= SAME * (1.0 + self.value.norm()) || self.condition <= DEFECTIVE
+        self.gap <= SAME * self.value.norm() || self.condition <= DEFECTIVE
     }
 
-    /// (1), and its error.
-    pub(super) fn slope(&self, change: &Change) -> (Complex<f64>, f64) {
-        let matrix = change.matrix.map(|x| Complex::new(x, 0.0));
-        let value = self.left.dot(&(matrix * &self.right)) / self.left.dot(&self.right);
-        // The vectors are those of a matrix with noise, which counts the more the nearer another multiplier is.
-        let turned = 2.0 * NOISE * self.size / self.gap;
-        let error = change.error + turned * change.matrix.norm();
-        (value, error / self.condition)
+    /// Whether the flow leaves more in the matrix than another one is away.
+    fn is_noise(&self) -> bool {
+        self.gap <= NOISE * self.size
+    }
+
+    /// How it moves with an orbit of which the matrices over the segments are known.
+    ///
+    /// # Errors
+    /// As those of [`change::along`].
+    pub(super) fn bend(
+        &self,
+        cycle: &mut Cycle,
+        states: &[f64],
+        variables: &[Variable],
+        matrices: &[DMatrix<f64>],
+    ) -> Result<Bend, SensitivityError> {
+        let complex = |matrix: &DMatrix<f64>| matrix.map(|x| Complex::new(x, 0.0));
+        let (mut right, mut left) = (self.right.clone(), self.left.clone());
+        let mut rights = Vec::with_capacity(cycle.unknowns());
+        for matrix in matrices {
+            rights.extend(right.iter().copied());
+            right = complex(matrix) * right;
+        }
+        let mut lefts = Vec::with_capacity(matrices.len());
+        for matrix in matrices.iter().rev() {
+            lefts.push(left.clone());
+            left = complex(matrix).tr_mul(&left);
+        }
+        lefts.reverse();
+        let part = |of: fn(&Complex<f64>) -> f64| {
+            DVector::from_iterator(rights.len(), rights.iter().map(of))
+        };
+        let mut directions = vec![part(|x| x.re)];
+        if self.value.im != 0.0 {
+            directions.push(part(|x| x.im));
+        }
+        Ok(Bend {
+            changes: change::along(cycle, states, variables, &directions)?,
+            lefts,
+            product: self.left.dot(&self.right),
+            turned: 2.0 * NOISE * self.size / self.gap,
+        })
     }
 }
 
-/// Adds the derivatives of multipliers as rows, or says which have none.
-pub(super) fn add(all: &[Multiplier], changes: &[Change], told: &mut Sensitivities) {
+/// A multiplier with what (1) takes.
+pub(super) struct Bend {
+    /// Along the real part of `v`, and along its imaginary part if there is one.
+    changes: Vec<Change>,
+    /// `w M_m .. M_(i+1)`
+    lefts: Vec<DVector<Complex<f64>>>,
+    /// `w v`
+    product: Complex<f64>,
+    /// How far noise turns the vectors.
+    turned: f64,
+}
+
+impl Bend {
+    /// (1) along a direction, and its error.
+    pub(super) fn slope(&self, along: &Along) -> (Complex<f64>, f64) {
+        let mut sum = Complex::new(0.0, 0.0);
+        let mut error = 0.0;
+        let parts = [Complex::new(1.0, 0.0), Complex::i()];
+        let longest = self
+            .lefts
+            .iter()
+            .fold(0.0, |m: f64, left| m.max(left.norm()));
+        for (change, part) in self.changes.iter().zip(parts) {
+            for (segment, left) in self.lefts.iter().enumerate() {
+                let moved = change.over(segment, along).map(|x| part * x);
+                sum += left.dot(&moved);
+            }
+            // The vectors are those of a matrix with noise, which counts the more the nearer another multiplier is.
+            let [size, own] = change.bounds(along);
+            error += longest * (own + self.turned * size);
+        }
+        let count = self.lefts.len() as f64;
+        (sum / self.product, count * error / self.product.norm())
+    }
+}
+
+/// Adds the derivatives of the multipliers of an orbit along directions as rows, or says which have none.
+///
+/// # Errors
+/// As those of [`change::along`].
+pub(super) fn add(
+    cycle: &mut Cycle,
+    states: &[f64],
+    variables: &[Variable],
+    matrices: &[DMatrix<f64>],
+    directions: &[Along],
+    told: &mut Sensitivities,
+) -> Result<(), SensitivityError> {
+    let all = of(&product(matrices));
     if all.is_empty() {
         let why = "they could not be computed";
         told.missing.push(Missing::new("multipliers", why));
     }
+    let mut rows = Vec::new();
+    let mut missing = Vec::new();
+    let mut before: Vec<(Complex<f64>, f64)> = Vec::new();
     for (index, multiplier) in all.iter().enumerate() {
         let name = format!("multiplier_{}", index + 1);
-        if multiplier.is_repeated() {
-            let why = "it is a repeated one, which has no derivatives";
-            told.missing.push(Missing::new(name, why));
+        let why = if multiplier.is_repeated() {
+            Some("it is a repeated one, which has no derivatives")
+        } else if multiplier.is_noise() {
+            Some(
+                "it is so near another one, and so small, that the motion does not tell them apart",
+            )
+        } else {
+            None
+        };
+        if let Some(why) = why {
+            missing.push(Missing::new(name, why));
             continue;
         }
-        let slopes: Vec<_> = changes
-            .iter()
-            .map(|change| multiplier.slope(change))
-            .collect();
+        let is_second = index > 0 && multiplier.value.im < 0.0;
+        let slopes: Vec<(Complex<f64>, f64)> = if is_second && all[index - 1].value == multiplier.value.conj() {
+            before
+                .iter()
+                .map(|(slope, error)| (slope.conj(), *error))
+                .collect()
+        } else {
+            let bend = multiplier.bend(cycle, states, variables, matrices)?;
+            directions.iter().map(|along| bend.slope(along)).collect()
+        };
         for part in ["re", "im"] {
             let of = |value: Complex<f64>| if part == "re" { value.re } else { value.im };
             let by = slopes.iter().map(|&(value, error)| Derivative {
                 value: of(value),
                 error,
             });
-            told.measured.push(Measured {
+            rows.push(Measured {
                 name: format!("{name}_{part}"),
                 unit: String::new(),
                 value: of(multiplier.value),
                 by: by.collect(),
             });
         }
+        before = slopes;
     }
+    told.measured.extend(rows);
+    told.missing.extend(missing);
+    Ok(())
+}
+
+/// The matrix over the period.
+pub(super) fn product(matrices: &[DMatrix<f64>]) -> DMatrix<f64> {
+    let order = matrices.first().map_or(0, DMatrix::nrows);
+    let one = DMatrix::identity(order, order);
+    matrices.iter().fold(one, |product, own| own * product)
 }

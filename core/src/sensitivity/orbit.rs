@@ -12,7 +12,7 @@ use super::error::SensitivityError;
 use super::moments::{Along, Places, Reader, Slope};
 use super::rows::{Row, needs};
 use super::slopes::{Asked, Slopes};
-use super::{Derivative, Measured, Missing, Sensitivities, change, multipliers};
+use super::{Derivative, Measured, Missing, Sensitivities, multipliers};
 use crate::branches::branch::{Branch, Model};
 use crate::branches::point::Point;
 use crate::cancel::Cancel;
@@ -51,8 +51,8 @@ pub(super) struct Start {
 pub(super) struct Read {
     slopes: Vec<Slope>,
     condition: f64,
-    /// The matrix over the period, and the directions that were read along.
-    monodromy: DMatrix<f64>,
+    /// The matrices over the segments, and the directions that were read along.
+    matrices: Vec<DMatrix<f64>>,
     along: Vec<Along>,
 }
 
@@ -220,12 +220,12 @@ impl<'p> Sensitive<'p> {
         read: &Read,
         told: &mut Sensitivities,
     ) -> Result<(), Error> {
-        let all = multipliers::of(&read.monodromy);
-        let directions = read.along.iter();
-        let changes =
-            directions.map(|along| change::along(cycle, &start.states, &self.variables, along));
-        match changes.collect::<Result<Vec<change::Change>, SensitivityError>>() {
-            Ok(changes) => multipliers::add(&all, &changes, told),
+        let Read {
+            matrices, along, ..
+        } = read;
+        let (states, variables) = (&start.states, &self.variables);
+        match multipliers::add(cycle, states, variables, matrices, along, told) {
+            Ok(()) => {}
             Err(error) if error.is_cancelled() => return Err(error.into()),
             Err(error) => told
                 .missing
@@ -275,7 +275,7 @@ impl<'p> Sensitive<'p> {
         Ok(Read {
             slopes: self.rows_of(&reader, &slopes, rows, along.len()),
             condition,
-            monodromy: cycle.monodromy(&evaluated),
+            matrices: cycle.matrices(&evaluated),
             along,
         })
     }

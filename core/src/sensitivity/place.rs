@@ -285,12 +285,14 @@ fn distances(
         let moved = lu
             .solve(&-&evaluated.by[index])
             .ok_or(SensitivityError::Singular)?;
-        let here = &at.columns * moved.rows(stop.segment * order, order) + &at.by[index];
+        let begin = &moved.as_slice()[stop.segment * order..][..order];
+        let own = (0..variables.len()).map(|other| f64::from(u8::from(other == index)));
+        let here = at.moved(begin, own);
         let by = slopes.by(variable);
         Ok(of(
             at,
             Direction {
-                state: here.as_slice(),
+                state: &here,
                 by: Some(&by),
                 phase: 0.0,
             },

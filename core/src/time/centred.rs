@@ -135,9 +135,10 @@ impl Flow for Centred {
             for column in columns.chunks_exact_mut(state.len()) {
                 self.centre.take_homogeneous(column, &mut self.room);
             }
-            if let Some(variable) = *by {
-                let first = columns.len() - state.len();
-                self.add_slope(variable, to, state, &mut columns[first..]);
+            let first = columns.len() - by.len() * state.len();
+            let columns = columns[first..].chunks_exact_mut(state.len());
+            for (&variable, column) in by.iter().zip(columns) {
+                self.add_slope(variable, to, state, column);
             }
         }
         self.centre.take(to, state, &mut self.room);

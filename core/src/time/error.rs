@@ -235,7 +235,7 @@ pub(crate) fn check_entries(
         return Ok(());
     };
     let entries = columns.len();
-    if entries % expected == 0 && (by.is_none() || entries > 0) {
+    if entries % expected == 0 && entries >= by.len() * expected {
         Ok(())
     } else {
         Err(FlowError::Entries { entries, expected })

@@ -32,6 +32,9 @@ use crate::system::{System, Variable};
 /// What is shown every smooth stretch of a motion.
 pub type See<'s> = &'s mut (dyn FnMut(&dyn Stretch) + 's);
 
+/// What is shown the number of a phase, and the state and the columns of the tangent there.
+pub type Show<'s> = &'s mut (dyn FnMut(usize, &[f64], &[f64]) + 's);
+
 /// The flow of one system, at values of its parameters and of `omega` that can be changed.
 ///
 /// Nothing is remembered between calls but room: the same call gives the same bits.
@@ -64,6 +67,31 @@ pub trait Flow: Send {
         tangent: Option<&mut Tangent>,
         see: Option<See<'_>>,
     ) -> Result<(), FlowError>;
+
+    /// As [`advance`](Self::advance) with a tangent, which is shown with the state at phases between, in the order of the motion: with the
+    /// number of the phase. A flow that knows both between its own steps makes none shorter for them.
+    ///
+    /// # Errors
+    /// As there.
+    fn advance_by(
+        &mut self,
+        [from, to]: [f64; 2],
+        stops: &[f64],
+        state: &mut [f64],
+        tangent: &mut Tangent,
+        show: Show<'_>,
+    ) -> Result<(), FlowError> {
+        let mut here = from;
+        for (number, &stop) in stops.iter().enumerate() {
+            let next = stop.clamp(here.min(to), here.max(to));
+            if next != here {
+                self.advance(here, next, state, Some(tangent), None)?;
+            }
+            show(number, state, &tangent.columns);
+            here = next;
+        }
+        self.advance(here, to, state, Some(tangent), None)
+    }
 
     /// The work done since the flow was made.
     fn work(&self) -> Work;
@@ -171,20 +199,26 @@ pub fn at(
 pub struct Tangent {
     /// Derivatives by the initial state or along chosen directions: columns of `2 n` entries, one after the other.
     pub columns: Vec<f64>,
-    /// The variable that the last column is the derivative by, at fixed phase; without one all columns are homogeneous.
-    pub by: Option<Variable>,
+    /// The variables that the last columns are the derivatives by, at fixed phase, in their order; without any all columns are homogeneous.
+    pub by: Vec<Variable>,
 }
 
 impl Tangent {
-    /// The derivatives by the initial state at the phase where it is given: the unit matrix. With a variable, a column of
-    /// zeros more.
-    pub fn of_state(coordinates: usize, by: Option<Variable>) -> Self {
+    /// The derivatives by the initial state at the phase where it is given: the unit matrix. For every variable, a column of
+    /// zeros more: `None`, `Some(variable)`, or several.
+    pub fn of_state(coordinates: usize, by: impl IntoIterator<Item = Variable>) -> Self {
         let order = 2 * coordinates;
-        let mut columns = vec![0.0; order * (order + usize::from(by.is_some()))];
+        let by: Vec<Variable> = by.into_iter().collect();
+        let mut columns = vec![0.0; order * (order + by.len())];
         for i in 0..order {
             columns[i * order + i] = 1.0;
         }
         Self { columns, by }
+    }
+
+    /// Columns that are not derivatives by a variable, of so many entries.
+    pub(crate) fn homogeneous(&self, order: usize) -> usize {
+        self.columns.len() / order - self.by.len()
     }
 }
 

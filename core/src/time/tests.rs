@@ -175,6 +175,7 @@ fn entries_are_counted() {
         }
         for (entries, by) in [(0, Some(Variable::Omega)), (3, None), (1, None)] {
             let columns = vec![0.0; entries];
+            let by = by.into_iter().collect();
             let mut tangent = Tangent { columns, by };
             let mut state = [0.1, 0.2];
             let error = flow.advance(0.0, 1.0, &mut state, Some(&mut tangent), None);
@@ -182,7 +183,7 @@ fn entries_are_counted() {
         }
         let mut none = Tangent {
             columns: Vec::new(),
-            by: None,
+            by: Vec::new(),
         };
         flow.advance(0.0, 1.0, &mut [0.1, 0.2], Some(&mut none), None)
             .unwrap();

@@ -120,9 +120,9 @@ impl Flow for RungeKutta {
             let phase = from + h * step as f64;
             let start = [state[0], state[1]];
             if let Some(Tangent { columns, by }) = tangent.as_deref_mut() {
-                let last = columns.len() / 2 - 1;
+                let homogeneous = columns.len() / 2 - by.len();
                 for (index, column) in columns.chunks_exact_mut(2).enumerate() {
-                    let by = by.filter(|_| index == last);
+                    let by = index.checked_sub(homogeneous).map(|index| by[index]);
                     let y = [start[0], start[1], column[0], column[1]];
                     let y = self.step(phase, h, y, by);
                     column.copy_from_slice(&y[2..]);

@@ -23,6 +23,7 @@ mod tangent;
 mod terms;
 #[cfg(test)]
 mod tests;
+mod variables;
 
 use std::f64::consts::TAU;
 
@@ -33,7 +34,7 @@ use crate::cancel::Cancel;
 use crate::error::Error;
 use crate::system::{System, Variable};
 use crate::time::error::{admits, check_entries};
-use crate::time::{Flow, FlowError, See, Stretch, Tangent, Work};
+use crate::time::{Flow, FlowError, See, Show, Stretch, Tangent, Work};
 
 /// Switches in one period beyond which the motion is taken for chatter.
 const MOST_SWITCHES: usize = 10_000;
@@ -182,7 +183,7 @@ impl Affine {
         tangent: &mut Option<&mut Tangent>,
         see: &mut Option<See<'_>>,
     ) -> Result<Passed, FlowError> {
-        let by = tangent.as_ref().and_then(|tangent| tangent.by);
+        let by = tangent.as_ref().and_then(|tangent| tangent.by.first());
         let phase = span.begin + done;
         let combination = self.model.combination(&self.pieces, phase, by.is_some())?;
         if tangent.is_some() {
@@ -294,6 +295,39 @@ impl Affine {
         let distance = exit.map(|exit| table.distance(exit, 0, &self.z));
         Ok(distance.is_some_and(|distance| crossing::derivatives(&distance, 0.0)[2] > 0.0))
     }
+
+    /// Moves with derivatives by one variable at most.
+    fn advance_one(
+        &mut self,
+        from: f64,
+        to: f64,
+        state: &mut [f64],
+        mut tangent: Option<&mut Tangent>,
+        mut see: Option<See<'_>>,
+    ) -> Result<(), FlowError> {
+        let by = tangent
+            .as_ref()
+            .and_then(|tangent| tangent.by.first().copied());
+        self.model.refresh(by, from)?;
+        if state.iter().any(|x| !x.is_finite()) || !from.is_finite() || !to.is_finite() {
+            return Err(FlowError::NotFinite { phase: from });
+        }
+        let plain = see.is_none() && by.is_none() && self.fill_scalar(from);
+        for span in spans(from, to) {
+            match &self.scalar {
+                Some(scalar) if plain => {
+                    // A period of it takes no longer than a step of others.
+                    self.goes_on(span.begin)?;
+                    let columns = tangent.as_mut().map(|tangent| &mut tangent.columns[..]);
+                    let columns = columns.unwrap_or(&mut []).as_chunks_mut().0;
+                    let (state, _) = state.as_chunks_mut();
+                    scalar.advance(span, &mut state[0], columns, &mut self.work)?;
+                }
+                _ => self.advance_span(span, state, &mut tangent, &mut see)?,
+            }
+        }
+        Ok(())
+    }
 }
 
 impl Flow for Affine {
@@ -318,33 +352,29 @@ impl Flow for Affine {
         from: f64,
         to: f64,
         state: &mut [f64],
-        mut tangent: Option<&mut Tangent>,
-        mut see: Option<See<'_>>,
+        tangent: Option<&mut Tangent>,
+        see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
         check_entries(self.coordinates(), state, tangent.as_deref())?;
         if to < from {
             return self.go_back(from, to, state, tangent, see);
         }
-        let by = tangent.as_ref().and_then(|tangent| tangent.by);
-        self.model.refresh(by, from)?;
-        if state.iter().any(|x| !x.is_finite()) || !from.is_finite() || !to.is_finite() {
-            return Err(FlowError::NotFinite { phase: from });
+        if tangent.as_ref().is_some_and(|tangent| tangent.by.len() > 1) {
+            return self.advance_by_each([from, to], state, tangent, see);
         }
-        let plain = see.is_none() && by.is_none() && self.fill_scalar(from);
-        for span in spans(from, to) {
-            match &self.scalar {
-                Some(scalar) if plain => {
-                    // A period of it takes no longer than a step of others.
-                    self.goes_on(span.begin)?;
-                    let columns = tangent.as_mut().map(|tangent| &mut tangent.columns[..]);
-                    let columns = columns.unwrap_or(&mut []).as_chunks_mut().0;
-                    let (state, _) = state.as_chunks_mut();
-                    scalar.advance(span, &mut state[0], columns, &mut self.work)?;
-                }
-                _ => self.advance_span(span, state, &mut tangent, &mut see)?,
-            }
-        }
-        Ok(())
+        self.advance_one(from, to, state, tangent, see)
+    }
+
+    fn advance_by(
+        &mut self,
+        ends: [f64; 2],
+        stops: &[f64],
+        state: &mut [f64],
+        tangent: &mut Tangent,
+        show: Show<'_>,
+    ) -> Result<(), FlowError> {
+        check_entries(self.coordinates(), state, Some(tangent))?;
+        self.shown_by_each(ends, stops, state, tangent, show)
     }
 
     fn work(&self) -> Work {

@@ -106,5 +106,5 @@ pub(super) fn switch(model: &Model, z: &[f64], switch: Switch, tangent: &mut Tan
 
 /// Columns that are not the derivative by a variable.
 pub(super) fn homogeneous(tangent: &Tangent, coordinates: usize) -> usize {
-    tangent.columns.len() / (2 * coordinates) - usize::from(tangent.by.is_some())
+    tangent.homogeneous(2 * coordinates)
 }

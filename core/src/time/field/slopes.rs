@@ -1,11 +1,11 @@
-//! Derivatives of the accelerations at several instants, by the state and by one variable.
+//! Derivatives of the accelerations at several instants, by the state and by variables.
 
 use super::Field;
 use super::batch::{Batch, Samples, add_product, add_times, add_times_wave, add_wave};
 use crate::law::{Derivatives, On};
 use crate::system::Variable;
 
-/// The derivatives (3) at the instants of a batch, and that by one variable: row by row of the matrices.
+/// The derivatives (3) at the instants of a batch, row by row of the matrices, and those by variables, one after the other.
 #[derive(Debug)]
 pub(crate) struct Slopes<const S: usize> {
     pub(crate) by_q: Vec<[f64; S]>,
@@ -22,7 +22,7 @@ impl<const S: usize> Slopes<S> {
         Self {
             by_q: vec![[0.0; S]; n * n],
             by_v: vec![[0.0; S]; n * n],
-            by_variable: vec![[0.0; S]; n],
+            by_variable: Vec::new(),
             rows: vec![[0.0; S]; n],
             coefficients: vec![0.0; field.coefficients.len()],
         }
@@ -30,12 +30,12 @@ impl<const S: usize> Slopes<S> {
 }
 
 impl Field {
-    /// Writes the derivatives (3) at a batch whose accelerations are known, and by one variable at fixed phase and state.
+    /// Writes the derivatives (3) at a batch whose accelerations are known, and by variables at fixed phase and state.
     pub(crate) fn linearise<const S: usize>(
         &self,
         batch: &mut Batch<S>,
         pieces: &[usize],
-        by: Option<Variable>,
+        by: &[Variable],
         out: &mut Slopes<S>,
     ) {
         let n = self.coordinates();
@@ -56,8 +56,9 @@ impl Field {
             self.add_contact_slopes(batch, index, pieces[index], out);
         }
         self.divide_columns_by_mass(out);
-        if let Some(variable) = by {
-            self.by_variable(batch, pieces, variable, out);
+        out.by_variable.resize(by.len() * n, [0.0; S]);
+        for (index, &variable) in by.iter().enumerate() {
+            self.by_variable(batch, pieces, variable, index, out);
         }
     }
 
@@ -147,8 +148,11 @@ impl Field {
         batch: &mut Batch<S>,
         pieces: &[usize],
         variable: Variable,
+        index: usize,
         out: &mut Slopes<S>,
     ) {
+        let n = self.coordinates();
+        let to = index * n..(index + 1) * n;
         let by = &mut out.coefficients;
         self.coefficients_by(variable, by);
         for row in &mut out.rows {
@@ -181,7 +185,7 @@ impl Field {
                 add_times_wave(to, -slope, force, waves, e.wave);
             }
         }
-        self.divide_by_mass(&out.rows, &mut out.by_variable);
+        self.divide_by_mass(&out.rows, &mut out.by_variable[to]);
     }
 
     /// The derivative of the force of a contact by a variable, at fixed phase and state.

@@ -103,9 +103,9 @@ pub(super) struct Engine<const S: usize> {
     pub(super) rule: Box<Rule<S>>,
     /// One for each map that has been needed; the first is plain.
     pub(super) tables: Vec<Tables<S>>,
-    /// Powers that grade a step at the lower and the upper end of each piece of each contact, and for which variable.
+    /// Powers that grade a step at the lower and the upper end of each piece of each contact, and for which variables.
     pub(super) powers: Vec<Vec<[u32; 2]>>,
-    powers_by: Option<Variable>,
+    powers_by: Vec<Variable>,
     /// Where the law of each contact may be sharp.
     pub(super) sharp: Vec<Option<Scales>>,
     /// They belong to the present values.
@@ -133,6 +133,8 @@ pub(super) struct Engine<const S: usize> {
     pub(super) column_sizes: Vec<[f64; 2]>,
     /// Workspace for tangent columns.
     pub(super) columns: Vec<f64>,
+    /// Derivatives of the accelerations at the nodes, coordinate by coordinate of each column.
+    pub(super) moved: Vec<[f64; S]>,
     /// Workspace for what a force does to the rates.
     pub(super) pushed: Vec<f64>,
     /// What errors of coordinates and rates are relative to.
@@ -168,7 +170,7 @@ impl<const S: usize> Engine<S> {
             powers: (0..contacts)
                 .map(|contact| vec![[1; 2]; field.law(contact).facts().pieces.len()])
                 .collect(),
-            powers_by: None,
+            powers_by: Vec::new(),
             sharp: (0..contacts)
                 .map(|contact| Scales::of(field.law(contact)))
                 .collect(),
@@ -191,6 +193,7 @@ impl<const S: usize> Engine<S> {
             right: vec![0.0; n * S],
             column_sizes: Vec::new(),
             columns: Vec::new(),
+            moved: Vec::new(),
             pushed: vec![0.0; n],
             scales: vec![[0.0; 2]; n],
             widths: [0.0; 3],
@@ -222,7 +225,7 @@ impl<const S: usize> Engine<S> {
     }
 
     /// Takes a state over.
-    pub(super) fn begin(&mut self, from: f64, state: &[f64], by: Option<Variable>) {
+    pub(super) fn begin(&mut self, from: f64, state: &[f64], by: &[Variable]) {
         let n = self.field.coordinates();
         let here = &mut self.here;
         (here.from, here.passed) = (from, 0.0);
@@ -250,7 +253,9 @@ impl<const S: usize> Engine<S> {
         self.find_levels();
         if !self.powers_known || self.powers_by != by {
             self.find_powers(by);
-            (self.powers_by, self.powers_known) = (by, true);
+            self.powers_by.clear();
+            self.powers_by.extend_from_slice(by);
+            self.powers_known = true;
         }
     }
 
@@ -306,10 +311,15 @@ impl<const S: usize> Engine<S> {
     }
 
     /// The powers that make the force and its derivatives analytic at either end of each piece.
-    fn find_powers(&mut self, by: Option<Variable>) {
-        let slopes = &mut self.slopes.coefficients;
-        if let Some(by) = by {
-            self.field.coefficients_by(by, slopes);
+    fn find_powers(&mut self, by: &[Variable]) {
+        // Sums of the sizes of what any of the variables changes.
+        let depends = &mut self.slopes_here.coefficients;
+        depends.fill(0.0);
+        for &variable in by {
+            let slopes = &mut self.slopes.coefficients;
+            self.field.coefficients_by(variable, slopes);
+            let both = depends.iter_mut().zip(&*slopes);
+            both.for_each(|(sum, slope)| *sum += slope.abs());
         }
         for (contact, scales) in self.sharp.iter_mut().enumerate() {
             let of = &self.field.contacts[contact];
@@ -322,7 +332,7 @@ impl<const S: usize> Engine<S> {
             let arguments = &self.field.contacts[contact].arguments;
             let used = |term: &&TermFacts| match term.of {
                 Quantity::ByArgument(argument) => {
-                    by.is_some() && self.field.depends(contact, argument, slopes)
+                    !by.is_empty() && self.field.depends(contact, argument, depends)
                 }
                 _ => true,
             };

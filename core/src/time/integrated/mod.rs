@@ -21,10 +21,11 @@ mod switch;
 mod tangent;
 #[cfg(test)]
 mod tests;
+mod view;
 
 use super::error::{admits, check_entries};
 use super::field::Field;
-use super::{Flow, FlowError, See, Tangent, Work};
+use super::{Flow, FlowError, See, Show, Stretch, Tangent, Work};
 use crate::cancel::Cancel;
 use crate::error::Error;
 use crate::model::error::ModelError;
@@ -135,7 +136,43 @@ impl Flow for Integrated {
     ) -> Result<(), FlowError> {
         check_entries(self.coordinates(), state, tangent.as_deref())?;
         let tangent = tangent.filter(|tangent| !tangent.columns.is_empty());
-        engine!(&mut self.engine, engine => engine.advance(from, to, state, tangent, see))
+        let Some(see) = see else {
+            return engine!(&mut self.engine, engine => engine.advance(from, to, state, tangent, None));
+        };
+        engine!(&mut self.engine, engine => {
+            engine.advance(from, to, state, tangent, Some(&mut |view| see(view)))
+        })
+    }
+
+    fn advance_by(
+        &mut self,
+        [from, to]: [f64; 2],
+        stops: &[f64],
+        state: &mut [f64],
+        tangent: &mut Tangent,
+        show: Show<'_>,
+    ) -> Result<(), FlowError> {
+        check_entries(self.coordinates(), state, Some(tangent))?;
+        let side = if to < from { -1.0 } else { 1.0 };
+        let mut next = 0;
+        // What is shown, apart from what moves.
+        let mut at = state.to_vec();
+        let mut columns = tangent.columns.clone();
+        engine!(&mut self.engine, engine => {
+            engine.advance(from, to, state, Some(tangent), Some(&mut |view| {
+                let (begin, end) = view.phases();
+                while let Some(&stop) = stops.get(next).filter(|&&stop| side * (stop - end) <= 0.0) {
+                    let stop = if side * (stop - begin) < 0.0 { begin } else { stop };
+                    view.tangent(stop, &mut at, &mut columns);
+                    show(next, &at, &columns);
+                    next += 1;
+                }
+            }))
+        })?;
+        for number in next..stops.len() {
+            show(number, state, &tangent.columns);
+        }
+        Ok(())
     }
 
     fn work(&self) -> Work {

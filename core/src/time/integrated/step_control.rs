@@ -1,12 +1,12 @@
 //! A motion, step by step.
 
-use crate::time::{FlowError, See, Stretch, Tangent};
+use crate::time::{FlowError, Tangent};
 
 use super::crossing::Found;
 use super::engine::Engine;
-use super::map::{Map, Tables};
-use super::rule::Rule;
+use super::map::Map;
 use super::step::{Solved, larger};
+use super::view::{View, Watch};
 
 /// The aim of a step's error, as a factor of its width.
 const SAFETY: f64 = 0.9;
@@ -68,14 +68,15 @@ impl<const S: usize> Engine<S> {
         to: f64,
         state: &mut [f64],
         tangent: Option<&mut Tangent>,
-        see: Option<See<'_>>,
+        see: Option<Watch<'_, S>>,
     ) -> Result<(), FlowError> {
         let n = self.field.coordinates();
         let finite = state.iter().all(|x| x.is_finite()) && from.is_finite() && to.is_finite();
         if !finite {
             return Err(FlowError::NotFinite { phase: from });
         }
-        self.begin(from, state, tangent.as_ref().and_then(|tangent| tangent.by));
+        let by = tangent.as_ref().map_or(&[][..], |tangent| &tangent.by);
+        self.begin(from, state, by);
         // Workspace for the columns at the end of a step, borrowed apart from the rest.
         let mut columns = std::mem::take(&mut self.columns);
         let result = self.run(to - from, tangent, &mut columns, see);
@@ -90,7 +91,7 @@ impl<const S: usize> Engine<S> {
         span: f64,
         mut tangent: Option<&mut Tangent>,
         columns: &mut Vec<f64>,
-        mut see: Option<See<'_>>,
+        mut see: Option<Watch<'_, S>>,
     ) -> Result<(), FlowError> {
         if span == 0.0 {
             return Ok(());
@@ -108,7 +109,10 @@ impl<const S: usize> Engine<S> {
         while self.here.passed != span {
             self.step(span, tangent.as_deref(), columns)?;
             if let Some(see) = &mut see {
-                see(&View { engine: self });
+                see(&View {
+                    engine: self,
+                    tangent: tangent.as_deref(),
+                });
             }
             let landing = self.trial.landing;
             let ends = (self.here.passed + self.trial.width - span) * span.signum() >= 0.0;
@@ -141,7 +145,7 @@ impl<const S: usize> Engine<S> {
         self.field.linearise(
             &mut self.instant,
             &self.here.pieces,
-            None,
+            &[],
             &mut self.slopes_here,
         );
         let n = self.here.q.len();
@@ -407,47 +411,6 @@ impl<const S: usize> Engine<S> {
         self.widths[kind] = if cut { next.max(known) } else { next };
         if kind == 1 {
             self.widths[0] = next;
-        }
-    }
-}
-
-/// The trial as a stretch of motion.
-struct View<'b, const S: usize> {
-    engine: &'b Engine<S>,
-}
-
-impl<const S: usize> Stretch for View<'_, S> {
-    fn phases(&self) -> (f64, f64) {
-        let start = self.engine.phase();
-        (start, start + self.engine.trial.width)
-    }
-
-    fn state(&self, phase: f64, state: &mut [f64]) {
-        let Engine {
-            rule,
-            tables,
-            here,
-            trial,
-            batch,
-            ..
-        } = self.engine;
-        let (start, end) = self.phases();
-        let rule: &Rule<S> = rule;
-        let tables: &Tables<S> = &tables[trial.table];
-        let u = tables
-            .map
-            .inverse((phase - start) / trial.width, (end - phase) / trial.width);
-        let mut weights = [0.0; super::roots::MOST];
-        let weights = &mut weights[..S + 2];
-        rule.interpolation(u, weights);
-        let n = here.q.len();
-        let at = |start: f64, row: &[f64; S], end: f64| {
-            let inner: f64 = row.iter().zip(&weights[1..]).map(|(x, w)| x * w).sum();
-            weights[0] * start + inner + weights[S + 1] * end
-        };
-        for i in 0..n {
-            state[i] = at(here.q[i], &batch.q[i], trial.q[i]);
-            state[n + i] = at(here.v[i], &batch.v[i], trial.v[i]);
         }
     }
 }

@@ -164,9 +164,11 @@ impl<const S: usize> Engine<S> {
             return Err(FlowError::Grazes { phase });
         }
         let order = 2 * self.here.q.len();
-        let last = tangent.columns.len() / order - 1;
+        let homogeneous = tangent.homogeneous(order);
         for (index, column) in tangent.columns.chunks_exact_mut(order).enumerate() {
-            let by = tangent.by.filter(|_| index == last);
+            let by = index
+                .checked_sub(homogeneous)
+                .map(|index| tangent.by[index]);
             let workspace = Workspace {
                 by: &mut self.slopes.coefficients,
                 levels: &mut self.levels_by,

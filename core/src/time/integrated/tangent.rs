@@ -11,6 +11,7 @@
 //! where `kappa = d ln T / dp` is not zero if the unit of time changes with `p`: `T` is a width in phase divided by `Omega`.
 //! The result is the exact derivative of the discrete motion.
 
+use crate::system::Variable;
 use crate::time::{FlowError, Tangent};
 
 use super::engine::Engine;
@@ -24,7 +25,7 @@ impl<const S: usize> Engine<S> {
         self.field.linearise(
             &mut self.batch,
             &self.here.pieces,
-            tangent.by,
+            &tangent.by,
             &mut self.slopes,
         );
         self.work.forces += S;
@@ -55,7 +56,9 @@ impl<const S: usize> Engine<S> {
         let n = self.here.q.len();
         let order = 2 * n;
         let time = self.time();
-        let last = tangent.columns.len() / order - 1;
+        let homogeneous = tangent.homogeneous(order);
+        let count = tangent.columns.len() / order;
+        self.moved.resize(count * n, [0.0; S]);
         let mut error = 0.0_f64;
         for (index, (column, to)) in tangent
             .columns
@@ -63,9 +66,9 @@ impl<const S: usize> Engine<S> {
             .zip(to.chunks_exact_mut(order))
             .enumerate()
         {
-            let by = tangent.by.filter(|_| index == last);
-            let kappa = by.map_or(0.0, |by| -self.field.base_by(by) / self.field.base());
-            self.right_side(column, kappa, by.is_some());
+            let by = index.checked_sub(homogeneous);
+            let kappa = by.map_or(0.0, |by| self.kappa(tangent.by[by]));
+            self.right_side(column, kappa, by);
             self.lu.solve(&self.matrix, &mut self.right);
             let tables = &self.tables[self.trial.table];
             let (dq, dv) = column.split_at(n);
@@ -74,6 +77,7 @@ impl<const S: usize> Engine<S> {
                 let da: &[f64; S] = self.right[i * S..][..S]
                     .try_into()
                     .unwrap_or(&[f64::NAN; S]);
+                self.moved[index * n + i] = *da;
                 let moved = self.trial.q[i] - self.here.q[i];
                 to[i] = dq[i]
                     + time * (dv[i] + time * dot(&tables.end_position, da))
@@ -97,18 +101,22 @@ impl<const S: usize> Engine<S> {
         error / self.tolerance
     }
 
-    /// The right-hand side of (1).
-    fn right_side(&mut self, column: &[f64], kappa: f64, by: bool) {
+    /// `kappa` of (2) for a variable.
+    fn kappa(&self, by: Variable) -> f64 {
+        -self.field.base_by(by) / self.field.base()
+    }
+
+    /// The right-hand side of (1), for a variable by its number.
+    fn right_side(&mut self, column: &[f64], kappa: f64, by: Option<usize>) {
         let n = self.here.q.len();
         let time = self.time();
         let tables = &self.tables[self.trial.table];
         let (dq, dv) = column.split_at(n);
         for i in 0..n {
             let to = &mut self.right[i * S..][..S];
-            if by {
-                to.copy_from_slice(&self.slopes.by_variable[i]);
-            } else {
-                to.fill(0.0);
+            match by {
+                Some(by) => to.copy_from_slice(&self.slopes.by_variable[by * n + i]),
+                None => to.fill(0.0),
             }
             for l in 0..n {
                 let by_q = &self.slopes.by_q[i * n + l];
