@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::cycle::Cycle;
 use super::error::SensitivityError;
-use super::moments::Along;
+use super::reader::Along;
 use super::slopes::Slopes;
 use crate::system::Variable;
 use crate::time::FlowError;

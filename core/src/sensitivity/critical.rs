@@ -29,10 +29,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::cycle::{Cycle, Evaluated};
 use super::error::SensitivityError;
-use super::moments::Along;
 use super::multipliers::{self, Multiplier};
 use super::orbit::Start;
 use super::place::{Moving, null_vectors};
+use super::reader::Along;
 use crate::event::EventKind;
 use crate::system::Variable;
 

@@ -3,7 +3,7 @@
 //! An orbit by whatever method is taken as a state that returns to itself, and everything is differentiated along its motion in time:
 //! exponents, levels, the motion of switches, one-sided limits at them. `asked` has the questions, `rows` what is read off, `orbit` and
 //! `events` the answers. `cycle` has the equations, `slopes` signals at one instant, `scan` where an orbit switches and has extremes,
-//! `moments` what is read off, `place` how folds and touches move, `multipliers` and `change` how multipliers do, `critical` where they
+//! `places` where it is looked at, `reader` and `moments` what is read off, `place` how folds and touches move, `multipliers` and `change` how multipliers do, `critical` where they
 //! cross the unit circle.
 
 mod asked;
@@ -16,6 +16,8 @@ mod moments;
 mod multipliers;
 mod orbit;
 mod place;
+mod places;
+mod reader;
 mod rows;
 mod scan;
 mod slopes;

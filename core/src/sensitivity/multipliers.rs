@@ -17,7 +17,7 @@ use nalgebra::{Complex, DMatrix, DVector, Schur};
 use super::change::{self, Change};
 use super::cycle::Cycle;
 use super::error::SensitivityError;
-use super::moments::Along;
+use super::reader::Along;
 use super::{Derivative, Measured, Missing, Sensitivities};
 use crate::numeric::spectrum::ITERATIONS;
 use crate::numeric::triangular::eigenvectors;
@@ -215,15 +215,16 @@ pub(super) fn add(
             continue;
         }
         let is_second = index > 0 && multiplier.value.im < 0.0;
-        let slopes: Vec<(Complex<f64>, f64)> = if is_second && all[index - 1].value == multiplier.value.conj() {
-            before
-                .iter()
-                .map(|(slope, error)| (slope.conj(), *error))
-                .collect()
-        } else {
-            let bend = multiplier.bend(cycle, states, variables, matrices)?;
-            directions.iter().map(|along| bend.slope(along)).collect()
-        };
+        let slopes: Vec<(Complex<f64>, f64)> =
+            if is_second && all[index - 1].value == multiplier.value.conj() {
+                before
+                    .iter()
+                    .map(|(slope, error)| (slope.conj(), *error))
+                    .collect()
+            } else {
+                let bend = multiplier.bend(cycle, states, variables, matrices)?;
+                directions.iter().map(|along| bend.slope(along)).collect()
+            };
         for part in ["re", "im"] {
             let of = |value: Complex<f64>| if part == "re" { value.re } else { value.im };
             let by = slopes.iter().map(|&(value, error)| Derivative {

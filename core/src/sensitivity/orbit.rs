@@ -9,7 +9,9 @@ use nalgebra::DMatrix;
 
 use super::cycle::{Cycle, Evaluated};
 use super::error::SensitivityError;
-use super::moments::{Along, Places, Reader, Slope};
+use super::moments::Slope;
+use super::places::Places;
+use super::reader::{Along, Reader};
 use super::rows::{Row, needs};
 use super::slopes::{Asked, Slopes};
 use super::{Derivative, Measured, Missing, Sensitivities, multipliers};

@@ -1,6 +1,6 @@
 //! What is read off orbits, row by row.
 
-use super::moments::Needs;
+use super::places::Needs;
 use super::slopes::Asked;
 use crate::branches::branch::{Model, Source};
 use crate::error::Error;

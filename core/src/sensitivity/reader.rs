@@ -1,0 +1,309 @@
+//! What is read off signals of an orbit, and how it moves along directions.
+//!
+//! Along a direction in which the states at the beginnings of the segments move by `s'`, a variable by `p'` and a switch therefore by
+//! `sigma'`,
+//!
+//! ```text
+//! sigma' = - ( g_s s' + g_p p' - level' ) / (dg/dtau),                                                        (1)
+//! (max y)' = y_s s' + y_p p'                                  at the extreme, where y_tau = 0,                (2)
+//! (lim y)' = y_s (s' + s_tau sigma') + y_p p' + y_tau sigma'  of a limit at a switch,                         (3)
+//! ( int y w )' = int (y_s s' + y_p p') w  +  sum ( y_before - y_after ) w sigma'.                             (4)
+//! ```
+
+use nalgebra::DVector;
+
+use super::cycle::{Cycle, Evaluated};
+use super::moments::{Moments, Slope};
+use super::places::Places;
+use super::scan::{End, Extreme};
+use super::slopes::{By, Direction, Slopes};
+use crate::system::Variable;
+
+/// How states and variables move together.
+#[derive(Debug, Clone)]
+pub(super) struct Along {
+    /// Of the states at the beginnings of all segments.
+    pub(super) states: DVector<f64>,
+    /// Of each variable that the equations were evaluated with.
+    pub(super) weights: Vec<f64>,
+}
+
+/// An orbit at the places where it is looked at.
+pub(super) struct Reader<'r> {
+    pub(super) places: &'r Places,
+    pub(super) slopes: &'r Slopes,
+    pub(super) evaluated: &'r Evaluated,
+    /// How the coefficients move along each direction.
+    by: Vec<By>,
+    directions: &'r [Along],
+    order: usize,
+    /// How each switch moves along each direction.
+    shifts: Vec<Vec<f64>>,
+    period: usize,
+}
+
+impl<'r> Reader<'r> {
+    pub(super) fn new(
+        places: &'r Places,
+        slopes: &'r Slopes,
+        evaluated: &'r Evaluated,
+        variables: &[Variable],
+        directions: &'r [Along],
+        cycle: &Cycle,
+    ) -> Self {
+        let of_variables: Vec<By> = variables.iter().map(|&v| slopes.by(v)).collect();
+        let by = directions
+            .iter()
+            .map(|along| combined(&of_variables, &along.weights));
+        let mut reader = Self {
+            places,
+            slopes,
+            evaluated,
+            by: by.collect(),
+            directions,
+            order: cycle.order(),
+            shifts: Vec::new(),
+            period: cycle.period,
+        };
+        let switches = 0..places.switches.len();
+        reader.shifts = switches.map(|index| reader.shift(index)).collect();
+        reader
+    }
+
+    /// How the state at a stop moves along a direction.
+    fn moved(&self, stop: usize, direction: usize) -> Vec<f64> {
+        let along = &self.directions[direction];
+        let first = self.places.stops[stop].segment * self.order;
+        let begin = &along.states.as_slice()[first..][..self.order];
+        self.evaluated.stops[stop].moved(begin, along.weights.iter().copied())
+    }
+
+    /// (1)
+    fn shift(&self, index: usize) -> Vec<f64> {
+        let switch = &self.places.scan.switches[index];
+        let stop = self.places.switches[index];
+        let pieces = &self.places.scan.arcs[switch.arc].pieces;
+        let state = &self.evaluated.stops[stop].state;
+        let at = self.slopes.at(self.places.stops[stop].phase, state, pieces);
+        let of = |direction: usize| {
+            let moved = self.moved(stop, direction);
+            let along = Direction {
+                state: &moved,
+                by: Some(&self.by[direction]),
+                phase: 0.0,
+            };
+            let (contact, level) = (switch.contact, switch.level);
+            let [grows, rate] = self.slopes.distance_along(&at, contact, level, along);
+            -grows / rate
+        };
+        (0..self.directions.len()).map(of).collect()
+    }
+
+    /// Writes the signals at a stop on the pieces of an arc, and how they move along all directions.
+    fn signals(&self, stop: usize, arc: usize, room: &mut Signals) {
+        let pieces = &self.places.scan.arcs[arc].pieces;
+        let state = &self.evaluated.stops[stop].state;
+        let at = self.slopes.at(self.places.stops[stop].phase, state, pieces);
+        self.slopes.write(&at, &mut room.values);
+        for (direction, slopes) in room
+            .slopes
+            .chunks_exact_mut(self.slopes.count())
+            .enumerate()
+        {
+            let moved = self.moved(stop, direction);
+            let along = Direction {
+                state: &moved,
+                by: Some(&self.by[direction]),
+                phase: 0.0,
+            };
+            self.slopes.along(&at, along, slopes);
+        }
+    }
+
+    /// Signals at a stop on the pieces of an arc.
+    fn values(&self, stop: usize, arc: usize) -> Vec<f64> {
+        let pieces = &self.places.scan.arcs[arc].pieces;
+        let state = &self.evaluated.stops[stop].state;
+        let at = self.slopes.at(self.places.stops[stop].phase, state, pieces);
+        let mut values = vec![0.0; self.slopes.count()];
+        self.slopes.write(&at, &mut values);
+        values
+    }
+
+    /// What is read off every signal.
+    pub(super) fn moments(&self) -> Vec<Moments> {
+        let (directions, needs) = (self.directions.len(), self.places.needs);
+        let zero = Slope::zero(directions);
+        let empty = Moments {
+            largest: None,
+            smallest: None,
+            mean: zero.clone(),
+            square: zero.clone(),
+            series: vec![[zero.clone(), zero]; needs.harmonics],
+        };
+        let mut moments = vec![empty; self.slopes.count()];
+        let mut room = Signals::new(self.slopes.count(), directions);
+        let mut waves = vec![[0.0; 2]; needs.harmonics];
+        for node in &self.places.nodes {
+            self.signals(node.stop, node.arc, &mut room);
+            for (index, wave) in waves.iter_mut().enumerate() {
+                *wave = ((index + 1) as f64 * node.angle).sin_cos().into();
+            }
+            for (signal, moments) in moments.iter_mut().enumerate() {
+                let by = room.slopes.iter().skip(signal).step_by(self.slopes.count());
+                moments.add(room.values[signal], by, node.weight, &waves);
+            }
+        }
+        if needs.integrals || needs.harmonics > 0 {
+            self.add_jumps(&mut moments);
+        }
+        let whole = std::f64::consts::TAU * self.period as f64;
+        for (signal, moments) in moments.iter_mut().enumerate() {
+            moments.divide(whole);
+            if needs.extremes {
+                let [largest, smallest] = [0, 1].map(|which| self.extreme(signal, which));
+                (moments.largest, moments.smallest) = (largest, smallest);
+            }
+        }
+        moments
+    }
+
+    /// The sum of (4).
+    fn add_jumps(&self, moments: &mut [Moments]) {
+        for (index, switch) in self.places.scan.switches.iter().enumerate() {
+            let stop = self.places.switches[index];
+            let before = self.values(stop, switch.arc);
+            let after = self.values(stop, switch.arc + 1);
+            let segment = self.places.stops[stop].segment;
+            let passed = self.passed(segment);
+            let angle = (passed + self.places.stops[stop].phase) / self.period as f64;
+            for (signal, moments) in moments.iter_mut().enumerate() {
+                moments.jump([before[signal], after[signal]], &self.shifts[index], angle);
+            }
+        }
+    }
+
+    /// What is added to a phase in a segment, for that of the orbit: segments are of equal length.
+    fn passed(&self, segment: usize) -> f64 {
+        let arcs = self.places.scan.arcs.iter();
+        let mut firsts = arcs.filter(|arc| arc.segment <= segment);
+        let (mut passed, mut last) = (0.0, None);
+        for arc in &mut firsts {
+            if last != Some(arc.segment) && arc.segment == segment {
+                return passed - arc.from;
+            }
+            passed += arc.to - arc.from;
+            last = Some(arc.segment);
+        }
+        0.0
+    }
+
+    /// (2) or (3)
+    fn extreme(&self, signal: usize, which: usize) -> Option<Slope> {
+        let extreme = self.places.scan.extremes[signal][which]?;
+        if let Some(stop) = self.places.extremes[signal][which] {
+            let mut room = Signals::new(self.slopes.count(), self.directions.len());
+            self.signals(stop, extreme.arc, &mut room);
+            let by = room.slopes.iter().skip(signal).step_by(self.slopes.count());
+            return Some(Slope {
+                value: extreme.value,
+                by: by.copied().collect(),
+            });
+        }
+        self.limit(signal, &extreme)
+    }
+
+    fn limit(&self, signal: usize, extreme: &Extreme) -> Option<Slope> {
+        let ends_at = match extreme.end? {
+            End::Last => extreme.arc,
+            End::First => extreme.arc.checked_sub(1)?,
+        };
+        let scan = &self.places.scan;
+        let index = scan
+            .switches
+            .iter()
+            .position(|switch| switch.arc == ends_at)?;
+        let stop = self.places.switches[index];
+        let (state, phase) = (
+            &self.evaluated.stops[stop].state,
+            self.places.stops[stop].phase,
+        );
+        // The state moves with the switch alike on both sides of it: that of the arc before is known.
+        let before = self.slopes.at(phase, state, &scan.arcs[ends_at].pieces);
+        let rate = self.slopes.state_rate(&before);
+        let at = self.slopes.at(phase, state, &scan.arcs[extreme.arc].pieces);
+        let mut slopes = vec![0.0; self.slopes.count()];
+        let by = (0..self.directions.len()).map(|direction| {
+            let shift = self.shifts[index][direction];
+            let moved = self.moved(stop, direction);
+            let with: Vec<f64> = moved
+                .iter()
+                .zip(&rate)
+                .map(|(s, r)| s + r * shift)
+                .collect();
+            let along = Direction {
+                state: &with,
+                by: Some(&self.by[direction]),
+                phase: shift,
+            };
+            self.slopes.along(&at, along, &mut slopes);
+            slopes[signal]
+        });
+        Some(Slope {
+            value: extreme.value,
+            by: by.collect(),
+        })
+    }
+
+    /// The part of the period that a gap is on each piece of its law.
+    pub(super) fn on_pieces(&self, contact: usize, pieces: usize) -> Vec<Slope> {
+        let scan = &self.places.scan;
+        let mut on = vec![Slope::zero(self.directions.len()); pieces];
+        for arc in &scan.arcs {
+            on[arc.pieces[contact]].value += arc.to - arc.from;
+        }
+        for (switch, shifts) in scan.switches.iter().zip(&self.shifts) {
+            if switch.contact != contact {
+                continue;
+            }
+            let [ends, begins] = [0, 1].map(|next| scan.arcs[switch.arc + next].pieces[contact]);
+            for (direction, shift) in shifts.iter().enumerate() {
+                on[ends].by[direction] += shift;
+                on[begins].by[direction] -= shift;
+            }
+        }
+        let whole = std::f64::consts::TAU * self.period as f64;
+        on.into_iter().map(|on| on.scaled(1.0 / whole)).collect()
+    }
+}
+
+/// Signals at one place, and how they move: along one direction after the other.
+struct Signals {
+    values: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+impl Signals {
+    fn new(count: usize, directions: usize) -> Self {
+        Self {
+            values: vec![0.0; count],
+            slopes: vec![0.0; count * directions],
+        }
+    }
+}
+
+fn combined(by: &[By], weights: &[f64]) -> By {
+    let count = by.first().map_or(0, |by| by.coefficients.len());
+    let mut sum = By {
+        coefficients: vec![0.0; count],
+        base: 0.0,
+    };
+    for (by, &weight) in by.iter().zip(weights) {
+        if weight != 0.0 {
+            let pairs = sum.coefficients.iter_mut().zip(&by.coefficients);
+            pairs.for_each(|(sum, x)| *sum += weight * x);
+            sum.base += weight * by.base;
+        }
+    }
+    sum
+}
