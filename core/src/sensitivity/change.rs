@@ -26,14 +26,14 @@ use crate::system::Variable;
 use crate::time::FlowError;
 
 /// The first step: no part of the orbit changes by more than this part of its size.
-const FIRST: f64 = 4e-4;
+const FIRST: f64 = 1e-4;
 /// Halvings of the step.
 const LEVELS: usize = 7;
 /// The first step is so often made shorter by this, where other levels are crossed at it.
 const SHORTER: f64 = 0.2;
 const SHORTENED: usize = 6;
 /// Errors below this part of a column are small enough, or of this part of the largest column.
-const ENOUGH: f64 = 3e-8;
+const ENOUGH: f64 = 1e-7;
 const LEAST: f64 = 1e-2;
 /// An error that has grown by this from the best is noise.
 const WORSE: f64 = 4.0;

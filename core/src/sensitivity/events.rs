@@ -11,7 +11,8 @@
 use super::critical::{self, Crosses};
 use super::cycle::Cycle;
 use super::error::SensitivityError;
-use super::orbit::{COARSE, FINE, ROUNDINGS, Sensitive, Start, apart};
+use super::moments::Slope;
+use super::orbit::{BESIDE, FINE, ROUNDINGS, Sensitive, Start, apart};
 use super::place::{self, Moving};
 use super::rows::Row;
 use super::{Derivative, Measured, Missing, Sensitivities};
@@ -34,23 +35,24 @@ impl Sensitive<'_> {
         let mut cycle = self.cycle(FINE.0)?;
         let start = self.start(&mut cycle)?;
         let crosses = Crosses::at(event.kind, self.point.orbit.parts);
-        let (moving, place) = match (event.kind, crosses) {
-            (_, Some(crosses)) => {
-                let moving = critical::crossing(&mut cycle, start, crosses, &others)?;
-                let errors = moving.errors.clone();
-                let place = self.placed(&moving, errors);
-                (moving, place)
-            }
-            (EventKind::Fold, _) => self.by_both(&mut cycle, &start, |cycle, start| {
+        let by_both = |cycle: &mut Cycle, find: &Find<'_>| -> Result<[Moving; 2], Error> {
+            let fine = find(cycle, &start)?;
+            let beside = find(&mut self.cycle(BESIDE.0)?, &fine.start())?;
+            Ok([fine, beside])
+        };
+        let both = match (event.kind, crosses) {
+            (_, Some(crosses)) => by_both(&mut cycle, &|cycle, start| {
+                critical::crossing(cycle, start.clone(), crosses, &others)
+            })?,
+            (EventKind::Fold, _) => by_both(&mut cycle, &|cycle, start| {
                 place::fold(cycle, &start.states, start.value, &others)
             })?,
-            (EventKind::Grazing { .. }, _) => {
-                self.by_both(&mut cycle, &start, |cycle, start| {
-                    place::grazing(cycle, self.system(), &start.states, start.value, &others)
-                })?
-            }
+            (EventKind::Grazing { .. }, _) => by_both(&mut cycle, &|cycle, start| {
+                place::grazing(cycle, self.system(), &start.states, start.value, &others)
+            })?,
             (kind, _) => return Err(SensitivityError::Kind { kind }.into()),
         };
+        let place = self.placed(&both);
         let mut told = self.told(0.0);
         for (name, place) in told.variables.iter().zip(&place) {
             if place.is_some_and(|place| place.value.is_nan()) {
@@ -70,39 +72,28 @@ impl Sensitive<'_> {
                     "at a fold derivatives at a fixed {} are unbounded",
                     told.varied
                 );
-                told.missing.push(Missing::new("measured", why));
-                self.add_of_fold(&mut cycle, &moving, rows, &mut told)?;
+                told.missing.push(Missing::new("measured", &why));
+                if multipliers {
+                    told.missing.push(Missing::new("multipliers", &why));
+                }
+                self.add_of_fold(&mut cycle, &both, rows, &mut told)?;
             }
             (_, Some(Crosses::One)) => {
                 let why = "the equations of the orbit are singular where another branch crosses";
                 told.missing.push(Missing::new("measured", why));
             }
-            _ => self.add_at_event(&mut cycle, &moving, rows, multipliers, &mut told)?,
+            _ => self.add_at_event(&mut cycle, &both, rows, multipliers, &mut told)?,
         }
         Ok(told)
     }
 
-    /// By two flows, with errors told by the coarse one.
-    fn by_both(
-        &self,
-        cycle: &mut Cycle,
-        start: &Start,
-        find: impl Fn(&mut Cycle, &Start) -> Result<Moving, SensitivityError>,
-    ) -> Result<(Moving, Vec<Option<Derivative>>), Error> {
-        let fine = find(cycle, start)?;
-        let coarse = find(&mut self.cycle(COARSE.0)?, &fine.start())?;
-        let both = fine.by.iter().zip(&coarse.by);
-        let rounding = ROUNDINGS * f64::EPSILON;
-        let errors = both.map(|(a, b)| (a - b).abs() + rounding * a.abs());
-        let errors = errors.collect();
-        let place = self.placed(&fine, errors);
-        Ok((fine, place))
-    }
-
-    /// Derivatives of a place by all variables: none by what is varied.
-    fn placed(&self, moving: &Moving, errors: Vec<f64>) -> Vec<Option<Derivative>> {
-        let both = moving.by.iter().zip(errors);
-        let mut known = both.map(|(&value, error)| Derivative { value, error });
+    /// Derivatives of a place by all variables, as two flows have it: none by what is varied.
+    fn placed(&self, [fine, beside]: &[Moving; 2]) -> Vec<Option<Derivative>> {
+        let both = fine.by.iter().zip(&beside.by).zip(&fine.errors);
+        let mut known = both.map(|((&value, beside), own)| Derivative {
+            value,
+            error: (value - beside).abs() + own + ROUNDINGS * f64::EPSILON * value.abs(),
+        });
         let place = self.variables.iter().map(|variable| {
             let own = *variable == self.varied;
             if own { None } else { known.next() }
@@ -114,14 +105,14 @@ impl Sensitive<'_> {
     fn add_at_event(
         &self,
         cycle: &mut Cycle,
-        moving: &Moving,
+        [moving, beside]: &[Moving; 2],
         rows: &[Row],
         multipliers: bool,
         told: &mut Sensitivities,
     ) -> Result<(), Error> {
         let mut start = moving.start();
         self.settle(cycle, &mut start)?;
-        let (mut at, read) = self.at(cycle, &start, rows)?;
+        let (mut at, read) = self.at(cycle, &start, &beside.start(), rows)?;
         if multipliers {
             self.add_multipliers(cycle, &start, &read, &mut at)?;
         }
@@ -144,15 +135,18 @@ impl Sensitive<'_> {
         Ok(())
     }
 
-    /// What is read off at a fold, as it moves.
+    /// What is read off at a fold, as it moves; errors are told by another flow, at the place where the fold is by that one.
     fn add_of_fold(
         &self,
         cycle: &mut Cycle,
-        fold: &Moving,
+        [fold, beside]: &[Moving; 2],
         rows: &[Row],
         told: &mut Sensitivities,
     ) -> Result<(), Error> {
-        let bends = match critical::bends(cycle, fold, &self.variables) {
+        let mut own = self.cycle(BESIDE.0)?;
+        let bends = critical::bends(cycle, fold, &self.variables)
+            .and_then(|fine| Ok([fine, critical::bends(&mut own, beside, &self.variables)?]));
+        let bends = match bends {
             Ok(bends) => bends,
             Err(error) if error.is_cancelled() => return Err(error.into()),
             Err(error) => {
@@ -160,24 +154,38 @@ impl Sensitive<'_> {
                 return Ok(());
             }
         };
-        let start = fold.start();
-        let along = &bends.directions;
-        let fine = self.read_along(cycle, &start, rows, FINE.1, along)?;
-        let mut own = self.cycle(COARSE.0)?;
-        let coarse = self.read_along(&mut own, &start, rows, COARSE.1, along)?;
-        for (row, (fine, coarse)) in rows.iter().zip(fine.iter().zip(&coarse)) {
-            let rounding = ROUNDINGS * f64::EPSILON;
-            let both = apart(fine, coarse, rounding);
-            let Some((last, both)) = both.split_last() else {
-                continue;
-            };
-            let by = both.iter().zip(&bends.along);
-            let by = by.map(|(by, &[value, error])| by.with(*last, Derivative { value, error }));
-            let by: Vec<Derivative> = by.collect();
+        let fine = self.read_along(cycle, &fold.start(), rows, FINE.1, &bends[0].directions)?;
+        let start = beside.start();
+        let beside = self.read_along(&mut own, &start, rows, BESIDE.1, &bends[1].directions)?;
+        for (row, both) in rows.iter().zip(fine.iter().zip(&beside)) {
+            let (fine, errors) = moved(both.0, &bends[0]);
+            let (beside, _) = moved(both.1, &bends[1]);
+            let mut by = apart(&fine, &beside, ROUNDINGS * f64::EPSILON);
+            for (by, error) in by.iter_mut().zip(errors) {
+                by.error += error;
+            }
             told.add_moving(row, fine.value, by);
         }
         Ok(())
     }
+}
+
+/// What finds an event and says how its place moves.
+type Find<'f> = dyn Fn(&mut Cycle, &Start) -> Result<Moving, SensitivityError> + 'f;
+
+/// What is read off along the directions in which a fold moves, and the errors that these leave: (3) of [`critical`](super::critical).
+fn moved(slope: &Slope, bends: &critical::Bends) -> (Slope, Vec<f64>) {
+    let last = slope.by.last().copied().unwrap_or(f64::NAN);
+    let both = slope.by.iter().zip(&bends.along);
+    let by = both.clone().map(|(by, [along, _])| by + last * along);
+    let moved = Slope {
+        value: slope.value,
+        by: by.collect(),
+    };
+    (
+        moved,
+        both.map(|(_, [_, error])| (last * error).abs()).collect(),
+    )
 }
 
 /// A derivative that is a number.

@@ -156,6 +156,13 @@ pub(super) struct Bend {
 }
 
 impl Bend {
+    /// (1) along the first of two directions, and its error, to which the other adds.
+    fn slope_of(&self, [along, other]: &[&Along; 2]) -> (Complex<f64>, f64) {
+        let (slope, error) = self.slope(along);
+        let (beside, _) = self.slope(other);
+        (slope, error + (slope - beside).norm())
+    }
+
     /// (1) along a direction, and its error.
     pub(super) fn slope(&self, along: &Along) -> (Complex<f64>, f64) {
         let mut sum = Complex::new(0.0, 0.0);
@@ -179,7 +186,8 @@ impl Bend {
     }
 }
 
-/// Adds the derivatives of the multipliers of an orbit along directions as rows, or says which have none.
+/// Adds the derivatives of the multipliers of an orbit along directions as rows, or says which have none. Each direction is given as two flows
+/// have it: where the orbit is hardly determined, they are what is known least.
 ///
 /// # Errors
 /// As those of [`change::along`].
@@ -188,7 +196,7 @@ pub(super) fn add(
     states: &[f64],
     variables: &[Variable],
     matrices: &[DMatrix<f64>],
-    directions: &[Along],
+    directions: &[[&Along; 2]],
     told: &mut Sensitivities,
 ) -> Result<(), SensitivityError> {
     let all = of(&product(matrices));
@@ -223,7 +231,10 @@ pub(super) fn add(
                     .collect()
             } else {
                 let bend = multiplier.bend(cycle, states, variables, matrices)?;
-                directions.iter().map(|along| bend.slope(along)).collect()
+                directions
+                    .iter()
+                    .map(|along| bend.slope_of(along))
+                    .collect()
             };
         for part in ["re", "im"] {
             let of = |value: Complex<f64>| if part == "re" { value.re } else { value.im };

@@ -26,6 +26,8 @@ use crate::system::{System, Variable};
 /// Tolerance of the flow and nodes of a rule, and those that errors are told by.
 pub(super) const FINE: (f64, usize) = (1e-12, 24);
 pub(super) const COARSE: (f64, usize) = (1e-10, 16);
+/// The flow that errors of events are told by: second derivatives are differenced, and noise of a coarser one would be all that is seen.
+pub(super) const BESIDE: (f64, usize) = (1e-11, 16);
 /// Those where no errors are asked for.
 const QUICK: (f64, usize) = (1e-9, 24);
 /// Roundings of a derivative, times the condition of the equations.
@@ -180,20 +182,21 @@ impl<'p> Sensitive<'p> {
         let mut cycle = self.cycle(FINE.0)?;
         let mut start = self.start(&mut cycle)?;
         self.settle(&mut cycle, &mut start)?;
-        let (told, _) = self.at(&mut cycle, &start, rows)?;
+        let (told, _) = self.at(&mut cycle, &start, &start, rows)?;
         Ok(told)
     }
 
-    /// The same at an orbit of the fine flow.
+    /// The same at an orbit of the fine flow, and near another place by the coarse one: at an event, that at which the event is by another flow.
     pub(super) fn at(
         &self,
         cycle: &mut Cycle,
         start: &Start,
+        near: &Start,
         rows: &[Row],
-    ) -> Result<(Sensitivities, Read), Error> {
+    ) -> Result<(Sensitivities, [Read; 2]), Error> {
         let fine = self.read(cycle, start, rows, FINE.1)?;
         let mut own = self.cycle(COARSE.0)?;
-        let mut near = start.clone();
+        let mut near = near.clone();
         self.settle(&mut own, &mut near)?;
         let coarse = self.read(&mut own, &near, rows, COARSE.1)?;
         let rounding = ROUNDINGS * f64::EPSILON / fine.condition;
@@ -201,7 +204,7 @@ impl<'p> Sensitive<'p> {
         for (row, (fine, coarse)) in rows.iter().zip(fine.slopes.iter().zip(&coarse.slopes)) {
             told.add(row, fine.value, apart(fine, coarse, rounding));
         }
-        Ok((told, fine))
+        Ok((told, [fine, coarse]))
     }
 
     /// And multipliers.
@@ -209,7 +212,7 @@ impl<'p> Sensitive<'p> {
         let mut cycle = self.cycle(FINE.0)?;
         let mut start = self.start(&mut cycle)?;
         self.settle(&mut cycle, &mut start)?;
-        let (mut told, read) = self.at(&mut cycle, &start, rows)?;
+        let (mut told, read) = self.at(&mut cycle, &start, &start, rows)?;
         self.add_multipliers(&mut cycle, &start, &read, &mut told)?;
         Ok(told)
     }
@@ -219,14 +222,13 @@ impl<'p> Sensitive<'p> {
         &self,
         cycle: &mut Cycle,
         start: &Start,
-        read: &Read,
+        [fine, coarse]: &[Read; 2],
         told: &mut Sensitivities,
     ) -> Result<(), Error> {
-        let Read {
-            matrices, along, ..
-        } = read;
+        let both = fine.along.iter().zip(&coarse.along);
+        let directions: Vec<[&Along; 2]> = both.map(|(fine, coarse)| [fine, coarse]).collect();
         let (states, variables) = (&start.states, &self.variables);
-        match multipliers::add(cycle, states, variables, matrices, along, told) {
+        match multipliers::add(cycle, states, variables, &fine.matrices, &directions, told) {
             Ok(()) => {}
             Err(error) if error.is_cancelled() => return Err(error.into()),
             Err(error) => told

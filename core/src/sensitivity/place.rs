@@ -44,7 +44,7 @@ pub(super) struct Moving {
     /// Of what is varied.
     pub(super) value: f64,
     pub(super) by: Vec<f64>,
-    /// Of these derivatives; nothing where they are told by another flow.
+    /// What is known of their errors without another flow.
     pub(super) errors: Vec<f64>,
 }
 
@@ -156,7 +156,7 @@ pub(super) fn fold(
         states,
         value,
         by,
-        errors: Vec::new(),
+        errors: vec![0.0; variables.len()],
     })
 }
 
@@ -260,7 +260,7 @@ pub(super) fn grazing(
                 states,
                 value,
                 by,
-                errors: Vec::new(),
+                errors: vec![0.0; variables.len()],
             });
         }
         value += step.clamp(-0.01 * value.abs(), 0.01 * value.abs());

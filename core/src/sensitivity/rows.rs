@@ -21,14 +21,7 @@ pub(super) struct Row {
 
 /// Everything that is read off.
 pub(super) fn all(model: &Model) -> Vec<Row> {
-    let mut measures = vec![
-        Measure::PeakToPeak,
-        Measure::Maximum,
-        Measure::Minimum,
-        Measure::Mean,
-        Measure::Rms,
-        Measure::CrestFactor,
-    ];
+    let mut measures = Measure::USUAL.to_vec();
     let harmonics = (1..=HARMONICS).flat_map(|h| [Measure::Amplitude(h), Measure::Phase(h)]);
     measures.extend(harmonics);
     let outputs = model.outputs.iter().map(|output| &output.name);

@@ -92,10 +92,15 @@ pub(super) struct Slopes {
     mass: Vec<Entry>,
     asked: Vec<Asked>,
     sums: Vec<Vec<Product>>,
+    /// Whether a sum has an acceleration or a force.
+    has_forces: bool,
 }
 
 /// A wave at a phase, and its first two derivatives by the phase.
 fn wave(wave: Wave, phase: f64) -> [f64; 3] {
+    if wave == Wave::CONSTANT {
+        return [1.0, 0.0, 0.0];
+    }
     let h = f64::from(wave.harmonic);
     let (sine, cosine) = (h * phase).sin_cos();
     let [value, slope] = match wave.part {
@@ -123,10 +128,16 @@ impl Slopes {
             mass: layout.mass.clone(),
             asked: asked.to_vec(),
             sums: Vec::new(),
+            has_forces: false,
             system: Arc::clone(system),
             layout,
         };
         slopes.sums = asked.iter().map(|&asked| slopes.products(asked)).collect();
+        slopes.has_forces = slopes
+            .sums
+            .iter()
+            .flatten()
+            .any(|product| matches!(product.of, Signal::Acceleration(_) | Signal::Force(_)));
         slopes
     }
 
@@ -444,13 +455,7 @@ impl Slopes {
 
     /// Writes the derivatives of all signals along a direction.
     pub(super) fn along(&self, at: &Instant, direction: Direction<'_>, out: &mut [f64]) {
-        let plain = |index: usize| {
-            let mut products = self.sums[index].iter();
-            products
-                .all(|product| !matches!(product.of, Signal::Acceleration(_) | Signal::Force(_)))
-        };
-        let needs_forces = (0..self.sums.len()).any(|index| !plain(index));
-        let (acceleration, forces) = if needs_forces {
+        let (acceleration, forces) = if self.has_forces {
             self.moved(at, direction)
         } else {
             (DVector::zeros(0), Vec::new())

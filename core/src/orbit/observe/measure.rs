@@ -36,6 +36,16 @@ pub enum Measure {
 }
 
 impl Measure {
+    /// What is read of every signal where nothing is asked for by name.
+    pub(crate) const USUAL: [Self; 6] = [
+        Self::PeakToPeak,
+        Self::Maximum,
+        Self::Minimum,
+        Self::Mean,
+        Self::Rms,
+        Self::CrestFactor,
+    ];
+
     /// Whether it is one of a contact alone.
     pub(crate) fn is_of_contact(self) -> bool {
         matches!(self, Self::Impulse | Self::Impacts | Self::OnPiece(_))

@@ -92,16 +92,6 @@ pub struct Table {
     named: [usize; 2],
 }
 
-/// What there is a column for of each named signal.
-const MEASURES: [Measure; 6] = [
-    Measure::PeakToPeak,
-    Measure::Maximum,
-    Measure::Minimum,
-    Measure::Mean,
-    Measure::Rms,
-    Measure::CrestFactor,
-];
-
 impl Table {
     /// A table without rows. A parameter whose name is that of another column gets an underscore after it.
     pub fn of(system: &dyn crate::system::System) -> Self {
@@ -201,7 +191,7 @@ impl Table {
         let mut cells: Vec<String> = outputs
             .chain(coordinates)
             .flat_map(|motion| {
-                MEASURES.map(|measure| maybe(motion.and_then(|motion| measure.of(&motion))))
+                Measure::USUAL.map(|measure| maybe(motion.and_then(|motion| measure.of(&motion))))
             })
             .collect();
         if self.named != [0; 2] {
@@ -240,7 +230,7 @@ fn named(model: &Model) -> [usize; 2] {
 fn of_signals(model: &Model) -> impl Iterator<Item = String> {
     let outputs = model.outputs.iter().map(|output| &output.name);
     let names = outputs.chain(&model.coordinates);
-    names.flat_map(|name| MEASURES.map(|measure| format!("{name}_{measure}")))
+    names.flat_map(|name| Measure::USUAL.map(|measure| format!("{name}_{measure}")))
 }
 
 /// Adds units to the names of columns, in the order in which [`Table::of_model`] has them.
@@ -266,7 +256,7 @@ fn with_units(model: &Model, names: &mut [String]) {
     if named(model) != [0; 2] {
         let outputs = model.outputs.iter().map(|output| &output.unit);
         let signals = outputs.chain(&model.units);
-        units.extend(signals.flat_map(|unit| MEASURES.map(|measure| measure.unit(unit))));
+        units.extend(signals.flat_map(|unit| Measure::USUAL.map(|measure| measure.unit(unit))));
         let contacts = 0..model.pieces.len();
         units.extend(contacts.flat_map(|contact| {
             [Measure::Impulse, Measure::Impacts].map(|measure| measure.unit(force(contact)))
