@@ -27,6 +27,12 @@ const TRIALS: usize = 3;
 /// The method is started again so often, while that gains this part of the sum of squares.
 const RESTARTS: usize = 6;
 const GAINED: f64 = 1e-3;
+/// So many iterations in a row that gain less than this part of the mean square of a residual, of which one moves an estimate by its standard
+/// error, are the last: what is measured at the end of a branch makes the sum of squares as steep as a wall, along which steps are short.
+const HARDLY: f64 = 2e-2;
+const IDLE: usize = 2;
+/// A trial is hopeless, and not computed to the end, where distances from its curve have so many times the sum of squares of those of the best.
+const HOPELESS: f64 = 4.0;
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Derivatives by an unknown that are below this part of those by the others are rounding: it has no influence, and does not move.
 pub(crate) const WITHOUT: f64 = 1e-9;
@@ -71,8 +77,22 @@ impl Trials<'_> {
         unknowns: &[f64],
         how: How,
     ) -> Result<Trial, String> {
+        self.below(problem, unknowns, how, f64::INFINITY)
+    }
+
+    /// The same, to the end only if the sum of squares stays below a bound.
+    ///
+    /// # Errors
+    /// As there.
+    fn below(
+        &mut self,
+        problem: &Problem,
+        unknowns: &[f64],
+        how: How,
+        bound: f64,
+    ) -> Result<Trial, String> {
         self.count += 1;
-        let trial = Trial::at(problem, unknowns, how);
+        let trial = Trial::below(problem, unknowns, how, bound);
         self.is_stopped |= problem.cancel.is_cancelled();
         if let Err(reason) = &trial
             && !self.is_stopped
@@ -154,6 +174,8 @@ pub(crate) fn minimise(
         least: square(&counted(problem.loss, scale, &start.residuals).0),
         best: start,
         last: None,
+        before: f64::INFINITY,
+        idle: 0,
         axes,
         problem,
         scale,
@@ -168,7 +190,9 @@ pub(crate) fn minimise(
             .map(|(axis, value)| axis.scaled(*value))
             .collect();
         let status = search.mpfit(&mut at);
-        converged = status.is_ok_and(|status| status.success != MPSuccess::MaxIter);
+        let is_idle = search.idle >= IDLE;
+        converged = is_idle || status.is_ok_and(|status| status.success != MPSuccess::MaxIter);
+        (search.before, search.idle) = (f64::INFINITY, 0);
         if !converged || search.least > (1.0 - GAINED) * before {
             break;
         }
@@ -246,6 +270,9 @@ struct Search<'s, 't> {
     least: f64,
     /// The last trial that is not the best.
     last: Option<Trial>,
+    /// The least sum before the last iteration, and how many in a row have hardly gained.
+    before: f64,
+    idle: usize,
     trials: &'s mut Trials<'t>,
 }
 
@@ -254,6 +281,18 @@ impl Search<'_, '_> {
     fn is_at_limit(&self) -> bool {
         let mut both = self.axes.iter().zip(&self.best.unknowns);
         both.any(|(axis, value)| axis.limits.contains(value))
+    }
+
+    /// Whether the iterations hardly gain any more; asked once for each.
+    fn is_idle(&mut self) -> bool {
+        let hardly = HARDLY * self.least / self.best.residuals.len().max(1) as f64;
+        if self.before - self.least <= hardly {
+            self.idle += 1;
+        } else {
+            self.idle = 0;
+        }
+        self.before = self.least;
+        self.idle >= IDLE
     }
 
     fn unscaled(&self, at: &[f64]) -> Vec<f64> {
@@ -273,7 +312,11 @@ impl MPFitter for Search<'_, '_> {
             deviates.copy_from_slice(&self.counted(&self.best.residuals).0);
             return Ok(());
         }
-        let trial = self.trials.at(self.problem, &unknowns, self.how);
+        let bound = match self.problem.loss {
+            Loss::Squares => HOPELESS * self.least.max(self.best.distances),
+            Loss::Huber(_) => f64::INFINITY,
+        };
+        let trial = self.trials.below(self.problem, &unknowns, self.how, bound);
         let size = (self.least / deviates.len() as f64).sqrt();
         let go_on = (self.trials.told)(self.trials.count, size);
         self.trials.is_stopped |= !go_on;
@@ -321,6 +364,9 @@ impl MPFitter for Search<'_, '_> {
         deviates: &mut [f64],
         columns: &mut [Option<Vec<f64>>],
     ) -> MPResult<()> {
+        if self.is_idle() {
+            return Err(MPError::Eval);
+        }
         let unknowns = self.unscaled(at);
         let problem = self.problem;
         let trial = if unknowns == self.best.unknowns {

@@ -64,6 +64,8 @@ pub(crate) struct Trial {
     pub(crate) unknowns: Vec<f64>,
     pub(crate) how: How,
     pub(crate) residuals: Vec<f64>,
+    /// Sum of the squares of the distances of all values from the curve as it was followed.
+    pub(crate) distances: f64,
     /// The first residual of each set.
     pub(crate) first: Vec<usize>,
     curves: Vec<Curve>,
@@ -71,22 +73,31 @@ pub(crate) struct Trial {
 }
 
 impl Trial {
+    /// Once the sum of the squares of distances from the curve as it was followed is above a bound, no more orbits are computed: residuals are
+    /// these distances then, and have no derivatives at their feet.
+    ///
     /// # Errors
     /// Why the curves cannot be compared with the data.
-    pub(crate) fn at(problem: &Problem, unknowns: &[f64], how: How) -> Result<Self, String> {
+    pub(crate) fn below(
+        problem: &Problem,
+        unknowns: &[f64],
+        how: How,
+        bound: f64,
+    ) -> Result<Self, String> {
         let groups = 0..problem.groups.len();
         let curves = groups.map(|group| Curve::follow(problem, group, unknowns));
         let mut trial = Self {
             unknowns: unknowns.to_vec(),
             how,
             residuals: Vec::new(),
+            distances: 0.0,
             first: Vec::new(),
             curves: curves.collect::<Result<_, _>>()?,
             beside: Vec::new(),
         };
         for set in &problem.sets {
             trial.first.push(trial.residuals.len());
-            let beside = trial.beside(problem, set)?;
+            let beside = trial.beside(problem, set, bound)?;
             trial.beside.push(beside);
         }
         if trial.residuals.iter().all(|residual| residual.is_finite()) {
@@ -97,7 +108,7 @@ impl Trial {
     }
 
     /// Puts a set beside its curve, and appends its residuals.
-    fn beside(&mut self, problem: &Problem, set: &Set) -> Result<Beside, String> {
+    fn beside(&mut self, problem: &Problem, set: &Set, bound: f64) -> Result<Beside, String> {
         let wanted = problem.groups[set.group].wanted.iter();
         let wanted = wanted
             .clone()
@@ -151,11 +162,12 @@ impl Trial {
             sheets,
             wanted,
         };
-        match self.how {
-            How::Near => self
-                .residuals
-                .extend(beside.feet.iter().map(|(_, foot)| foot.distance)),
-            How::Exact => self.exact(problem, set, &mut beside)?,
+        let distances = beside.feet.iter().map(|(_, foot)| foot.distance);
+        self.distances += distances.clone().map(|r| r * r).sum::<f64>();
+        if self.how == How::Near || self.distances > bound {
+            self.residuals.extend(distances);
+        } else {
+            self.exact(problem, set, &mut beside)?;
         }
         for (number, jump) in set.jumps.iter().enumerate() {
             let by = jump.deviation.max(self.least(set.size[0]));
@@ -478,14 +490,15 @@ mod tests {
         let problem = Problem::new(&fit).expect("a problem");
         let at = [1.45, 0.035, 0.97];
         for how in [How::Near, How::Exact] {
-            let mut trial = Trial::at(&problem, &at, how).expect("a trial");
+            let mut trial = Trial::below(&problem, &at, how, f64::INFINITY).expect("a trial");
             let jacobian = trial.jacobian(&problem).expect("derivatives");
             for j in 0..3 {
                 let h = 1e-5 * at[j];
                 let [a, b] = [-h, h].map(|h| {
                     let mut moved = at;
                     moved[j] += h;
-                    let trial = Trial::at(&problem, &moved, how).expect("a trial");
+                    let trial =
+                        Trial::below(&problem, &moved, how, f64::INFINITY).expect("a trial");
                     trial.residuals
                 });
                 let differences = a.iter().zip(&b).map(|(a, b)| (b - a) / (2.0 * h));

@@ -16,8 +16,6 @@ use crate::time::{FlowError, Stretch};
 /// Samples of a stretch are at most so far apart in phase, and there are at least so many steps between them.
 const APART: f64 = 0.1;
 const FEWEST: usize = 4;
-/// Between two samples a signal is no steeper than at either by more than this factor.
-const STEEPER: f64 = 2.0;
 /// A switch is looked at this part of its arc before it is passed, where the state surely belongs to the arc.
 const BEFORE: f64 = 1e-10;
 
@@ -146,8 +144,7 @@ impl Scan {
                     x: sample.phase,
                     value: sample.slopes[signal],
                 });
-                let values = [before.values[signal], next.values[signal]];
-                if ends[0].value * ends[1].value < 0.0 && self.may_exceed(signal, ends, values) {
+                if ends[0].value * ends[1].value < 0.0 {
                     self.refine(signal, ends, &mut |phase| {
                         let at = sample(slopes, stretch, phase, &pieces, room);
                         [at.values[signal], at.slopes[signal]]
@@ -176,16 +173,6 @@ impl Scan {
         if smallest.is_none_or(|known| value < known.value) {
             *smallest = Some(extreme);
         }
-    }
-
-    /// Whether a signal may be larger or smaller between two samples than it is known to be: along either tangent it goes no farther.
-    fn may_exceed(&self, signal: usize, ends: [Place; 2], values: [f64; 2]) -> bool {
-        let steep = ends[0].value.abs().max(ends[1].value.abs());
-        let reach = STEEPER * steep * (ends[1].x - ends[0].x);
-        let [largest, smallest] = &self.extremes[signal];
-        let [a, b] = values;
-        largest.is_none_or(|known| a.max(b) + reach > known.value)
-            || smallest.is_none_or(|known| a.min(b) - reach < known.value)
     }
 
     /// Notes an extreme between two samples whose slopes have opposite signs.
