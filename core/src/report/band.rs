@@ -8,11 +8,12 @@
 //! ```
 //!
 //! for uncertainties that are independent. Near folds `y_p` and `y_lambda` are unbounded alike, and (1) is not. It holds where the curve does not bend within
-//! its band; where it does there is none, and the chart says so.
+//! its band; where it does there is none, and the chart says so. Where the axis is one of logarithms, `y` is the logarithm: an edge is never
+//! at or below zero, where it would have no place.
 //!
 //! Source: JCGM 100 (2008), Guide to the expression of uncertainty in measurement, section 5.1.
 
-use hertzian_chart::Chart;
+use hertzian_chart::{Chart, Scale};
 
 use crate::branches::branch::Branch;
 use crate::error::{Error, ErrorKind};
@@ -87,7 +88,13 @@ impl Branch {
             };
             places.push(there);
         }
-        Ok(edges(&places))
+        let mut band = edges(&places);
+        if by_logarithm(&seen) {
+            for [_, y] in band.edges.iter_mut().flatten() {
+                *y = y.exp();
+            }
+        }
+        Ok(band)
     }
 }
 
@@ -104,12 +111,23 @@ fn place(
     let squares = values.map(|((by, value), own)| (by.value * own.of(*value)).powi(2));
     let height = squares.sum::<f64>().sqrt();
     let stretch = seen.varied(1.0);
-    let place = Place {
-        at: [seen.varied(value), row.value],
-        height,
-        slope: slope.value / stretch,
+    let (y, by_value) = if by_logarithm(seen) {
+        (row.value.ln(), 1.0 / row.value)
+    } else {
+        (row.value, 1.0)
     };
-    (place.height.is_finite() && place.slope.is_finite()).then_some(place)
+    let place = Place {
+        at: [seen.varied(value), y],
+        height: height * by_value,
+        slope: slope.value * by_value / stretch,
+    };
+    let is_finite = y.is_finite() && place.height.is_finite() && place.slope.is_finite();
+    is_finite.then_some(place)
+}
+
+/// Whether what is shown is on an axis of logarithms, decibels among them.
+fn by_logarithm(seen: &Seen<'_>) -> bool {
+    seen.scale != Scale::Linear
 }
 
 /// Extent of finite numbers.

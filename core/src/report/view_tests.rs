@@ -393,3 +393,31 @@ fn a_page_has_response_spectrum_motion_and_force() {
     assert!(page.contains(" of the largest, and not drawn"));
     assert!(page.contains("time [s]") && page.contains("frequency ω [rad/s]"));
 }
+
+/// At resonance the amplitude is as the inverse of the damping: an uncertainty of a twentieth is one of the logarithm too. Where one and a half times the
+/// damping is uncertain the lower edge would be below zero; on an axis of logarithms it has a place.
+#[test]
+fn a_band_on_a_logarithmic_axis_is_above_zero() {
+    let model = Linear::default();
+    let request = FrequencyResponse::of(&model).from(0.5).to(1.5);
+    let branch = request.run().unwrap();
+    let below = |uncertain: &str, scale: Scale| {
+        let view = View::new().scale(scale);
+        let band = branch.band(&view, &[uncertain.parse().unwrap()]).unwrap();
+        let [above, below] = band.edges;
+        let lower = |(a, b): ([f64; 2], [f64; 2])| a[1].min(b[1]);
+        let edge = above.into_iter().zip(below).map(lower);
+        edge.collect::<Vec<f64>>()
+    };
+    let lowest = |edge: &[f64]| edge.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(lowest(&below("c=150%", Scale::Linear)) < 0.0);
+    assert!(lowest(&below("c=150%", Scale::Logarithmic)) > 0.0);
+    let highest = |edge: &[f64]| edge.iter().copied().fold(0.0, f64::max);
+    let sizes: Vec<f64> = branch
+        .points
+        .iter()
+        .map(|point| point.peak_to_peak())
+        .collect();
+    let ratio = highest(&below("c=5%", Scale::Decibel)) / highest(&sizes);
+    assert!((ratio * 0.05_f64.exp() - 1.0).abs() < 3e-3, "{ratio}");
+}

@@ -238,9 +238,11 @@ pub(super) fn add(
             };
         for part in ["re", "im"] {
             let of = |value: Complex<f64>| if part == "re" { value.re } else { value.im };
+            // A simple real multiplier stays real.
+            let is_real = part == "im" && multiplier.value.im == 0.0;
             let by = slopes.iter().map(|&(value, error)| Derivative {
                 value: of(value),
-                error,
+                error: if is_real { 0.0 } else { error },
             });
             rows.push(Measured {
                 name: format!("{name}_{part}"),
@@ -261,4 +263,25 @@ pub(super) fn product(matrices: &[DMatrix<f64>]) -> DMatrix<f64> {
     let order = matrices.first().map_or(0, DMatrix::nrows);
     let one = DMatrix::identity(order, order);
     matrices.iter().fold(one, |product, own| own * product)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Small multipliers are apart by their own size; below what the flow leaves nothing tells them apart; and one that stands twice is repeated.
+    #[test]
+    fn small_multipliers_are_told_apart_as_far_as_they_are_known() {
+        let diagonal = |values: [f64; 3]| of(&DMatrix::from_diagonal(&values.to_vec().into()));
+        let told = |all: &[Multiplier]| -> Vec<[bool; 2]> {
+            let all = all.iter();
+            all.map(|one| [one.is_repeated(), one.is_noise()]).collect()
+        };
+        let apart = diagonal([0.5, 2e-9, 1e-9]);
+        assert_eq!(told(&apart), [[false; 2]; 3]);
+        let noise = diagonal([0.5, 2e-13, 1e-13]);
+        assert_eq!(told(&noise), [[false; 2], [false, true], [false, true]]);
+        let repeated = diagonal([0.5, 0.3, 0.3 + 1e-9]);
+        assert!(repeated[1].is_repeated() && repeated[2].is_repeated());
+    }
 }

@@ -47,6 +47,8 @@ fn compare(name: &str, values: &[f64], [from, to]: [f64; 2], make: &Make) {
         }
         let moves = branch.event_sensitivities(fold).unwrap();
         assert!(moves.measured.is_empty() && moves.of_place("omega").is_none());
+        let is_said = |what: &str| moves.missing.iter().any(|missing| missing.what == what);
+        assert!(is_said("measured") && is_said("multipliers"));
         let before = &branch.points[fold.after - 1];
         // Both orbits near the fold are on one side of it.
         let side = (before.value - omega).signum();

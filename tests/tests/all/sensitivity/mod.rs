@@ -64,6 +64,12 @@ fn assert_near(
         "{what}: {} against {expected} ({error:.0e}), apart {apart:.1e}, stated {:.1e}",
         derivative.value, derivative.error
     );
+    // An error that is stated must say something.
+    let largest = 1e-4 * expected.abs().max(1e-3 * scale).abs();
+    assert!(
+        derivative.error <= largest + noise + 2.0 * error,
+        "{what}: {derivative:?} states too much of {expected}"
+    );
     assert!(
         apart <= allowed,
         "{what}: {derivative:?} {expected} {error:e}"

@@ -5,7 +5,7 @@ use hertzian::sensitivity::Sensitivities;
 use hertzian::{Branch, FrequencyResponse, Point, System};
 use hertzian_tests::{OneSided, TwoMasses};
 
-use super::{Make, assert_near, names, richardson, shot};
+use super::{Make, assert_near, names, richardson, shot, unloaded};
 
 /// Everything that is read off the orbits at a frequency, against differences by the frequency and all parameters.
 fn compare(name: &str, values: &[f64], omega: f64, range: [f64; 2], make: &Make) {
@@ -165,4 +165,68 @@ fn of_two_masses() {
         })
     };
     compare("two masses", &[100.0, 0.1], 0.7, [0.64, 0.77], &make);
+}
+
+hertzian::oscillator! {
+    Linear(x) {
+        param zeta in 0.0..;
+        param stiffness > 0;
+        ddot(x) + 2*zeta*dot(x) + stiffness*x = cos(omega*t);
+    }
+}
+
+/// Multipliers of a linear oscillator are `exp((-zeta +- i sqrt(k - zeta^2)) T)`. Its damping is zero, at the end of its range.
+#[test]
+fn multipliers_without_damping() {
+    let model = Linear {
+        zeta: 0.0,
+        stiffness: 1.0,
+    };
+    let (omega, period) = (0.7, std::f64::consts::TAU / 0.7);
+    let request = FrequencyResponse::of(&model).by(hertzian::Shooting::new());
+    let branch = request.from(0.6).to(0.8).stability(false).run().unwrap();
+    let at = branch.sensitivities(&branch.at(omega).unwrap()[0]).unwrap();
+    let [s, c] = [period.sin(), period.cos()];
+    // That with a positive imaginary part stands first.
+    let side = s.signum();
+    let expected = [
+        ("multiplier_1_re", "zeta", -period * c),
+        ("multiplier_1_im", "zeta", -period * s * side),
+        ("multiplier_1_re", "stiffness", -0.5 * period * s),
+        ("multiplier_1_im", "stiffness", 0.5 * period * c * side),
+        ("multiplier_2_im", "stiffness", -0.5 * period * c * side),
+        ("multiplier_1_re", "omega", period / omega * s),
+        ("multiplier_1_im", "omega", -period / omega * c * side),
+    ];
+    for (name, by, value) in expected {
+        let found = at.of(name, by).unwrap();
+        let apart = (found.value - value).abs();
+        assert!(
+            apart < 1e-7 * period && apart <= found.error,
+            "{name} by {by}: {found:?} {value}"
+        );
+        assert!(found.error < 1e-5 * period, "{name} by {by}: {found:?}");
+    }
+}
+
+/// A motion that is its own mirror image has no even harmonics: neither their amplitudes nor their phases have derivatives.
+#[test]
+fn harmonics_that_vanish_are_said_to() {
+    let model = unloaded(&[0.01, 1.5, 0.1]);
+    let request = FrequencyResponse::of(model.as_ref()).stability(false);
+    let branch = request.from(1.4).to(1.6).run().unwrap();
+    let at = branch.sensitivities(&branch.at(1.5).unwrap()[0]).unwrap();
+    for (name, is_there) in [
+        ("x:h2", false),
+        ("x:phase2", false),
+        ("x:h3", true),
+        ("x:phase1", true),
+    ] {
+        assert_eq!(at.of(name, "drive").is_some(), is_there, "{name}");
+        assert_eq!(
+            at.missing.iter().any(|missing| missing.what == name),
+            !is_there,
+            "{name}"
+        );
+    }
 }
