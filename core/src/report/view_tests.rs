@@ -4,7 +4,7 @@ use hertzian_chart::{Chart, Scale};
 
 use super::view::{Frequency, View};
 use crate::branches::branch::Branch;
-use crate::branches::point::Event;
+use crate::branches::point::{Event, Point};
 use crate::event::EventKind;
 use crate::report::error::ViewError;
 use crate::response::FrequencyResponse;
@@ -413,11 +413,7 @@ fn a_band_on_a_logarithmic_axis_is_above_zero() {
     assert!(lowest(&below("c=150%", Scale::Linear)) < 0.0);
     assert!(lowest(&below("c=150%", Scale::Logarithmic)) > 0.0);
     let highest = |edge: &[f64]| edge.iter().copied().fold(0.0, f64::max);
-    let sizes: Vec<f64> = branch
-        .points
-        .iter()
-        .map(|point| point.peak_to_peak())
-        .collect();
+    let sizes: Vec<f64> = branch.points.iter().map(Point::peak_to_peak).collect();
     let ratio = highest(&below("c=5%", Scale::Decibel)) / highest(&sizes);
     assert!((ratio * 0.05_f64.exp() - 1.0).abs() < 3e-3, "{ratio}");
 }

@@ -59,7 +59,7 @@ impl Moments {
     pub(super) fn add<'v>(
         &mut self,
         value: f64,
-        by: impl Iterator<Item = &'v f64> + Clone,
+        by: &(impl Iterator<Item = &'v f64> + Clone),
         weight: f64,
         waves: &[[f64; 2]],
     ) {

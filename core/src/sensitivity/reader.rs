@@ -151,7 +151,7 @@ impl<'r> Reader<'r> {
             }
             for (signal, moments) in moments.iter_mut().enumerate() {
                 let by = room.slopes.iter().skip(signal).step_by(self.slopes.count());
-                moments.add(room.values[signal], by, node.weight, &waves);
+                moments.add(room.values[signal], &by, node.weight, &waves);
             }
         }
         if needs.integrals || needs.harmonics > 0 {
