@@ -242,12 +242,16 @@ impl Equations {
 
     /// Residuals, and their derivatives by the unknowns if asked for. What the last pass has is not computed again.
     pub(super) fn pass(&mut self, u: &[f64], derivatives: bool) {
-        if self.last == u && (self.derived || !derivatives) {
+        let known = self.last == u;
+        if known && (self.derived || !derivatives) {
             return;
         }
         let n = self.skeleton.unknowns();
         self.last.clear();
-        self.extremes = OnceCell::new();
+        // Derivatives do not move them.
+        if !known {
+            self.extremes = OnceCell::new();
+        }
         self.failed = !self.set(u[n]);
         if self.failed {
             self.residual.fill(f64::NAN);

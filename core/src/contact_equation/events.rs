@@ -32,9 +32,12 @@ const SECANTS: usize = 12;
 /// The first of them, in units of the orbit.
 const APART: f64 = 1e-6;
 /// Where a curve is solved for around a point at which branches cross, in this part of a step: the cubic through four points is as exact as
-/// the fourth power of that.
+/// the fourth power of that. In units of the orbit it is as far at least: what rounding leaves grows as its inverse.
 const AROUND: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
 const BESIDE: f64 = 5e-3;
+const ASIDE: f64 = 5e-4;
+/// They come half as near so often at most.
+const NEARER: usize = 6;
 /// What the last change is multiplied by.
 const SAFETY: f64 = 2.0;
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -112,8 +115,9 @@ fn along(at: &CurvePoint, step: Step<'_>) -> CurvePoint {
     }
 }
 
-/// Where a test function vanishes along the curve of equations near a point.
-type Locate = fn(&mut Equations, &CurvePoint, Test) -> Option<(CurvePoint, f64)>;
+/// Where a test function vanishes along the curve of equations near a point, with what is left of it there and what the place of it may be wrong
+/// by, in what is varied.
+type Locate = fn(&mut Equations, &CurvePoint, Test) -> Option<(CurvePoint, f64, f64)>;
 
 /// Where a test function vanishes with more nodes, and more again until that does not change.
 fn located_again(run: &Run<'_>, at: &CurvePoint, test: Test, locate: Locate) -> Option<Again> {
@@ -133,10 +137,11 @@ fn located_again(run: &Run<'_>, at: &CurvePoint, test: Test, locate: Locate) -> 
             tangent: there(&point.tangent),
             scale: point.scale,
         };
-        let Some((point, test)) = locate(&mut next, &start, test) else {
+        let Some((point, test, apart)) = locate(&mut next, &start, test) else {
             break;
         };
-        let error = SAFETY * (point.parameter() - value).abs() + ROUNDING * value.abs();
+        let moved = (point.parameter() - value).abs();
+        let error = SAFETY * (moved + apart) + ROUNDING * value.abs();
         let known = error <= KNOWN * value.abs();
         found = Some(Again {
             equations: next,
@@ -245,7 +250,11 @@ impl<'c> Curve<'c> {
 }
 
 /// Where the test function vanishes along the curve of these equations, near a point of a coarser one.
-fn again(equations: &mut Equations, start: &CurvePoint, test: Test) -> Option<(CurvePoint, f64)> {
+fn again(
+    equations: &mut Equations,
+    start: &CurvePoint,
+    test: Test,
+) -> Option<(CurvePoint, f64, f64)> {
     let mut curve = Curve::new(equations, start);
     let (mut x0, mut x1) = (0.0, APART);
     let mut f0 = curve.at(x0, test)?.1;
@@ -265,20 +274,45 @@ fn again(equations: &mut Equations, start: &CurvePoint, test: Test) -> Option<(C
             break;
         }
     }
-    Some((best, f1))
+    Some((best, f1, 0.0))
 }
 
 /// The same where branches cross: the equations are singular there, and are solved at four points around, whose cubic has the zero and the
-/// orbit at it.
+/// orbit at it. What it leaves out is at most by what points half as far move it, and these are taken as long as that shrinks.
 fn crossing(
     equations: &mut Equations,
     start: &CurvePoint,
     test: Test,
-) -> Option<(CurvePoint, f64)> {
+) -> Option<(CurvePoint, f64, f64)> {
     let mut curve = Curve::new(equations, start);
     // An arc length times that of the direction.
     let size = dot(&curve.form, &start.tangent);
-    let places = AROUND.map(|part| part * BESIDE * size);
+    let mut beside = (BESIDE * size).max(ASIDE * size.sqrt());
+    let mut found = of_cubic(&mut curve, test, beside)?;
+    let mut apart = f64::INFINITY;
+    for _ in 0..NEARER {
+        beside *= 0.5;
+        let Some(nearer) = of_cubic(&mut curve, test, beside) else {
+            break;
+        };
+        let [value, before] = [&nearer, &found].map(|(point, _)| point.parameter());
+        let moved = (value - before).abs();
+        if moved >= apart {
+            break;
+        }
+        (found, apart) = (nearer, moved);
+        if moved <= KNOWN * value.abs() {
+            break;
+        }
+    }
+    let (point, left) = found;
+    apart.is_finite().then_some((point, left, apart))
+}
+
+/// By the cubic through points around, the nearer ones as far.
+fn of_cubic(curve: &mut Curve<'_>, test: Test, beside: f64) -> Option<(CurvePoint, f64)> {
+    let start = curve.start;
+    let places = AROUND.map(|part| part * beside);
     let mut points = Vec::with_capacity(places.len());
     for s in places {
         points.push(curve.at(s, test)?);
@@ -291,7 +325,7 @@ fn crossing(
         x: places[index],
         value: points[index].1,
     });
-    let s = roots::root(a, b, VANISHED * size, value)?;
+    let s = roots::root(a, b, VANISHED * beside, value)?;
     let mut point = CurvePoint {
         u: vec![0.0; start.u.len()],
         tangent: vec![0.0; start.u.len()],

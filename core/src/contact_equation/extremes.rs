@@ -73,6 +73,7 @@ impl Extremes {
         };
         let mut turns = vec![nothing; coordinates];
         let mut samples = Samples::default();
+        let mut ends = vec![None; values.contacts.len()];
         for interval in 0..motion.intervals() {
             let [from, to] = motion.phases(interval);
             if to <= from {
@@ -81,7 +82,13 @@ impl Extremes {
             samples.take(motion, interval);
             for (contact, gaps) in gaps.iter_mut().enumerate() {
                 if !values.contacts[contact].levels.is_empty() {
-                    samples.gap(motion, interval, contact, gaps);
+                    let scan = Scan {
+                        motion,
+                        interval,
+                        contact,
+                        found: gaps,
+                    };
+                    samples.gap(scan, &mut ends[contact]);
                 }
             }
             for (coordinate, turns) in turns.iter_mut().enumerate() {
@@ -161,22 +168,14 @@ impl Samples {
         &self.states[index * order..][..order]
     }
 
-    /// Extremes of a gap.
-    fn gap(
-        &self,
-        motion: &Motion<'_>,
-        interval: usize,
-        contact: usize,
-        found: &mut Vec<GapExtreme>,
-    ) {
-        let mut scan = Scan {
-            motion,
-            interval,
-            contact,
-            found,
-        };
+    /// Extremes of a gap. Which sign its rate has where two intervals meet, as at an extreme of another gap that is opposite to it, is rounding:
+    /// it is one for both of them.
+    fn gap(&self, mut scan: Scan<'_, '_>, end: &mut Option<Seen>) {
         let last = self.phases.len() - 1;
         let mut before = scan.of(self.phases[0], self.states(0));
+        if let Some(end) = end.filter(|end| (end.x - before.x).abs() <= SEEN_TWICE) {
+            before.rate = end.rate;
+        }
         for index in 1..=last {
             let mut next = scan.of(self.phases[index], self.states(index));
             let here = next;
@@ -189,6 +188,7 @@ impl Samples {
             scan.between(before, next, HALVINGS);
             before = here;
         }
+        *end = Some(before);
     }
 
     /// Turns of a coordinate.

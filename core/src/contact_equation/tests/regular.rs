@@ -149,6 +149,14 @@ fn orbits_of_two_periods_end_where_they_have_one() {
         other => panic!("{other:?}"),
     };
     assert!((joint(&branch) - joint(&exact)).abs() < 1e-8);
+    // That is where orbits of one period double, which is a simple zero along them.
+    let doubled = FrequencyResponse::of(&model).from(1.4).to(1.5);
+    let doubled = doubled.by(Shooting::new().tolerance(1e-12)).run().unwrap();
+    let doubled = doubled.events(EventKind::PeriodDoubling).next().unwrap();
+    let crossed = branch.events(EventKind::BranchPoint).next().unwrap();
+    let apart = (crossed.point.value - doubled.point.value).abs();
+    assert!(apart <= crossed.error + doubled.error, "{apart:e}");
+    assert!(crossed.error < 1e-9, "{:e}", crossed.error);
     assert!(branch.points.iter().all(|point| point.orbit.period == 2));
     let doublings = |branch: &Branch| -> Vec<f64> {
         let found = branch.events(EventKind::PeriodDoubling);

@@ -24,7 +24,9 @@
 #[cfg(test)]
 mod tests;
 
-use crate::numeric::linear::{Lu, Matrix, Singular, dot};
+use multiversion::multiversion;
+
+use crate::numeric::linear::{Group, LANES, Lu, Matrix, Singular, dot, times_columns};
 
 /// One link.
 #[derive(Debug, Clone)]
@@ -37,7 +39,7 @@ pub(crate) struct Link {
     /// `E` and `F`, row by row.
     carried: Vec<f64>,
     driven: Vec<f64>,
-    /// `L` row by row, and `D` column by column.
+    /// `L` row by row in whole groups, and `D` column by column.
     direct: Vec<f64>,
     through: Vec<f64>,
 }
@@ -67,6 +69,9 @@ pub(crate) struct Chain {
     /// Those at a link, and at the next.
     at: Vec<f64>,
     next: Vec<f64>,
+    /// Some columns of `D`, row by row, and of `S`.
+    solved: Vec<Group>,
+    known: Vec<Group>,
 }
 
 impl Link {
@@ -77,7 +82,7 @@ impl Link {
             by_states: vec![0.0; count * states],
             carried: vec![0.0; states * states],
             driven: vec![0.0; states * count],
-            direct: vec![0.0; count * columns],
+            direct: vec![0.0; count * columns.next_multiple_of(LANES)],
             through: vec![0.0; columns * count],
         }
     }
@@ -100,11 +105,12 @@ impl Link {
     pub(crate) fn equation_mut(&mut self, row: usize) -> [&mut [f64]; 3] {
         let count = self.count().max(1);
         let states = self.by_states.len() / count;
-        let columns = self.direct.len() / count;
+        let stride = self.direct.len() / count;
+        let columns = self.through.len() / count;
         [
             self.matrix.row_mut(row),
             &mut self.by_states[row * states..][..states],
-            &mut self.direct[row * columns..][..columns],
+            &mut self.direct[row * stride..][..columns],
         ]
     }
 
@@ -130,47 +136,75 @@ impl Link {
         }
     }
 
-    /// (4): factorises, and makes `D` from `S` row by row.
-    fn eliminate(&mut self, states: &[f64], columns: usize) -> Result<(), Singular> {
-        let count = self.count();
+    /// (4) and (5) for `S` row by row, to which `G` is added by whoever knows it; there is room for some columns of `D` and `S`.
+    fn eliminate(
+        &mut self,
+        states: &[f64],
+        next: &mut [f64],
+        [solved, known]: [&mut Vec<Group>; 2],
+    ) -> Result<(), Singular> {
+        let (order, count) = (self.carried.len().isqrt(), self.count());
+        let columns = states.len() / order.max(1);
+        carry(&self.carried, states, next, columns);
         if count == 0 {
             return Ok(());
         }
         self.lu.factorise(&mut self.matrix)?;
-        let order = self.by_states.len() / count;
-        for (j, column) in self.through.chunks_exact_mut(count).enumerate() {
-            let mut is_zero = true;
-            let rows = self.by_states.chunks_exact(order);
-            let direct = self.direct.chunks_exact(columns);
-            for ((x, by), direct) in column.iter_mut().zip(rows).zip(direct) {
-                let known = states.chunks_exact(columns);
-                *x = direct[j] + by.iter().zip(known).map(|(b, s)| b * s[j]).sum::<f64>();
-                is_zero &= *x == 0.0;
+        let stride = self.direct.len() / count;
+        for first in (0..columns).step_by(LANES) {
+            let width = LANES.min(columns - first);
+            known.clear();
+            known.extend(states.chunks_exact(columns).map(|row| {
+                let mut group = [0.0; LANES];
+                group[..width].copy_from_slice(&row[first..][..width]);
+                group
+            }));
+            solved.clear();
+            let direct = self.direct.chunks_exact(stride);
+            let direct = direct.map(|row| row[first..].as_chunks().0[0]);
+            solved.extend(direct);
+            add_products(&self.by_states, known, solved);
+            self.lu.solve_groups(&self.matrix, solved);
+            let through = self.through[first * count..].chunks_exact_mut(count);
+            for (l, column) in through.take(width).enumerate() {
+                for (to, of) in column.iter_mut().zip(&*solved) {
+                    *to = of[l];
+                }
             }
-            if !is_zero {
-                self.lu.solve(&self.matrix, column);
+            let rows = self.driven.chunks_exact(count);
+            for (driven, to) in rows.zip(next.chunks_exact_mut(columns)) {
+                let sum = times_columns(driven, solved);
+                for (to, sum) in to[first..].iter_mut().zip(sum) {
+                    *to -= sum;
+                }
             }
         }
         Ok(())
     }
+}
 
-    /// (5) for `S` row by row, to which `G` is added by whoever knows it.
-    fn carry(&self, states: &[f64], next: &mut [f64], columns: usize) {
-        let (order, count) = (self.carried.len().isqrt(), self.count());
-        for (row, to) in next.chunks_exact_mut(columns).enumerate() {
-            let carried = &self.carried[row * order..][..order];
-            for (factor, of) in carried.iter().zip(states.chunks_exact(columns)) {
-                if *factor != 0.0 {
-                    for (to, of) in to.iter_mut().zip(of) {
-                        *to += factor * of;
-                    }
+/// `E S` of (5), added.
+fn carry(carried: &[f64], states: &[f64], next: &mut [f64], columns: usize) {
+    let order = carried.len().isqrt();
+    let rows = carried.chunks_exact(order.max(1));
+    for (carried, to) in rows.zip(next.chunks_exact_mut(columns)) {
+        for (factor, of) in carried.iter().zip(states.chunks_exact(columns)) {
+            if *factor != 0.0 {
+                for (to, of) in to.iter_mut().zip(of) {
+                    *to += factor * of;
                 }
             }
-            if count > 0 {
-                let driven = &self.driven[row * count..][..count];
-                for (to, through) in to.iter_mut().zip(self.through.chunks_exact(count)) {
-                    *to -= dot(driven, through);
-                }
+        }
+    }
+}
+
+/// Adds the products of every row with some columns.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn add_products(rows: &[f64], columns: &[Group], to: &mut [Group]) {
+    for (row, to) in rows.chunks_exact(columns.len()).zip(to) {
+        for (factor, of) in row.iter().zip(columns) {
+            for l in 0..LANES {
+                to[l] += factor * of[l];
             }
         }
     }
@@ -187,6 +221,8 @@ impl Chain {
             room: vec![0.0; links.len() * states],
             at: vec![0.0; states],
             next: vec![0.0; states],
+            solved: Vec::with_capacity(links.iter().map(Link::count).max().unwrap_or(0)),
+            known: Vec::with_capacity(states),
             links,
             reads: Vec::new(),
             factors: Vec::new(),
@@ -225,10 +261,10 @@ impl Chain {
 
     /// Goes over a link whose equations are written, from `S` in front of it to that behind it, which has `G`.
     pub(crate) fn pass(&mut self, link: usize, states: &[f64], next: &mut [f64]) {
-        if let Err(at) = self.links[link].eliminate(states, self.columns) {
+        let room = [&mut self.solved, &mut self.known];
+        if let Err(at) = self.links[link].eliminate(states, next, room) {
             self.singular = Some(at);
         }
-        self.links[link].carry(states, next, self.columns);
     }
 
     /// Adds a multiple of a linear form of the states behind a link to one of (3).

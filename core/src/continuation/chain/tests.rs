@@ -177,6 +177,7 @@ fn solves_what_all_equations_say() {
         (&[8], 2, 4),
         (&[0, 0], 4, 2),
         (&[1, 2, 9, 1], 4, 7),
+        (&[5, 9], 4, 20),
     ] {
         let (mut jacobian, whole) = random(counts, states, others);
         jacobian.factorise().unwrap();

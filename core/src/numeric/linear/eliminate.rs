@@ -8,7 +8,7 @@ use std::hint::select_unpredictable;
 
 use multiversion::multiversion;
 
-use super::products::{add_products, total};
+use super::products::{add_products, sum_of_products, total};
 use super::{Group, LANES, Lu, Matrix, Singular};
 
 /// Rows that meet the panel at once: with a group of the panel they fill sixteen registers of four entries.
@@ -187,6 +187,28 @@ fn eliminate_below<const R: usize>(
         }
         for r in 0..R {
             rows[r * width + g] = x[r];
+        }
+    }
+}
+
+/// Solves `L U x = b` in place for as many right-hand sides at once as a group has entries: every row is one.
+///
+/// Sums are two, which need not wait for each other.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+pub(super) fn substitute_groups(matrix: &Matrix, reciprocals: &[f64], b: &mut [Group]) {
+    for row in 1..b.len() {
+        let (known, here) = b.split_at_mut(row);
+        let sum = sum_of_products(&matrix.row(row)[..row], known);
+        for l in 0..LANES {
+            here[0][l] -= sum[l];
+        }
+    }
+    for row in (0..b.len()).rev() {
+        let (here, known) = b.split_at_mut(row + 1);
+        let sum = sum_of_products(&matrix.row(row)[row + 1..], known);
+        let here = &mut here[row];
+        for l in 0..LANES {
+            here[l] = (here[l] - sum[l]) * reciprocals[row];
         }
     }
 }

@@ -15,13 +15,14 @@ mod products;
 #[cfg(test)]
 mod tests;
 
-use eliminate::{eliminate, substitute};
-pub use products::{dot, weighted_dot};
+use eliminate::{eliminate, substitute, substitute_groups};
+pub use products::{dot, times_columns, weighted_dot};
 
 /// Entries are handled in groups of this many; it is the width of a panel too.
-const LANES: usize = 8;
+pub const LANES: usize = 8;
 
-type Group = [f64; LANES];
+/// Entries of a row, or of several right-hand sides.
+pub type Group = [f64; LANES];
 
 /// A square matrix, row by row.
 #[derive(Debug)]
@@ -219,6 +220,14 @@ impl Lu {
             b.swap(column, pivot);
         }
         substitute(matrix, &self.reciprocals, b);
+    }
+
+    /// The same for as many right-hand sides at once as a group has entries.
+    pub fn solve_groups(&self, matrix: &Matrix, b: &mut [Group]) {
+        for (column, &pivot) in self.pivots.iter().enumerate() {
+            b.swap(column, pivot);
+        }
+        substitute_groups(matrix, &self.reciprocals, b);
     }
 
     /// Solves `A^T x = b` in place with the same factors.

@@ -47,6 +47,34 @@ pub(super) fn add_products(mut sum: Group, a: &[Group], b: &[Group]) -> Group {
     sum
 }
 
+/// A row times some columns, which stand row by row.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+pub fn times_columns(row: &[f64], columns: &[Group]) -> Group {
+    sum_of_products(row, columns)
+}
+
+/// The same, in two sums that need not wait for each other.
+#[inline(always)]
+pub(super) fn sum_of_products(row: &[f64], columns: &[Group]) -> Group {
+    let (mut even, mut odd) = ([0.0; LANES], [0.0; LANES]);
+    let ((pairs, rest), (two, one)) = (row.as_chunks::<2>(), columns.as_chunks::<2>());
+    for ([a, b], [x, y]) in pairs.iter().zip(two) {
+        for l in 0..LANES {
+            even[l] += a * x[l];
+            odd[l] += b * y[l];
+        }
+    }
+    if let ([a], [x]) = (rest, one) {
+        for l in 0..LANES {
+            even[l] += a * x[l];
+        }
+    }
+    for l in 0..LANES {
+        even[l] += odd[l];
+    }
+    even
+}
+
 #[inline(always)]
 pub(super) fn total(lanes: &Group) -> f64 {
     ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6]))

@@ -50,6 +50,19 @@ proptest! {
             for (r, s) in residual.iter().zip(scale.iter()) {
                 prop_assert!(r.abs() <= 1e-13 * s, "{r:e} of {s:e}");
             }
+            let mut groups: Vec<Group> = rhs[..order]
+                .iter()
+                .map(|b| std::array::from_fn(|l| b * (l as f64 - 3.0)))
+                .collect();
+            lu.solve_groups(&matrix, &mut groups);
+            for (l, times) in (0..LANES).map(|l| (l, l as f64 - 3.0)) {
+                let of = nalgebra::DVector::from_fn(order, |i, _| groups[i][l]);
+                let residual = &reference * of
+                    - nalgebra::DVector::from_column_slice(&rhs[..order]) * times;
+                for (r, s) in residual.iter().zip(scale.iter()) {
+                    prop_assert!(r.abs() <= 1e-13 * times.abs() * s, "{r:e} of {s:e}");
+                }
+            }
             let mut y = rhs[..order].to_vec();
             lu.solve_transposed(&matrix, &mut y);
             let y = nalgebra::DVector::from_vec(y);
