@@ -2,7 +2,7 @@
 //!
 //! Equations are exact while their switches are in the order that they are told in. Where that changes within a step, those of either end are
 //! right to first order beyond the change alone: test functions there, and events, are those of equations that are told in the order of the
-//! orbit itself, which is solved for again with them at the same value.
+//! orbit itself, which is solved for again with them: at the same value, or across the tangent where the branch turns and no value tells one.
 
 use nalgebra::DMatrix;
 
@@ -13,8 +13,9 @@ use crate::branches::point::Event;
 use crate::branches::problem::Zero;
 use crate::branches::solve;
 use crate::continuation::follow::{CurvePoint, Step};
-use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::event::EventKind;
+use crate::numeric::linear::dot;
 use crate::shooting::tested::Test;
 
 /// What the order changes is small.
@@ -24,18 +25,46 @@ const OPTIONS: NewtonOptions = NewtonOptions {
     damped: false,
 };
 
+/// How an orbit is solved for with other equations. Says whether it was.
+type Solve = fn(&mut Equations, &mut CurvePoint) -> bool;
+
+fn at_value(equations: &mut Equations, point: &mut CurvePoint) -> bool {
+    let mut newton = Newton::new(equations);
+    solve::at_value(equations, &mut newton, &mut point.u, OPTIONS).is_ok()
+}
+
+/// In the plane across its tangent.
+fn across(equations: &mut Equations, point: &mut CurvePoint) -> bool {
+    let mut newton = Newton::new(equations);
+    let mut row = vec![0.0; point.u.len()];
+    newton
+        .norm()
+        .linear_form(point.scale, &point.tangent, &mut row);
+    let border = Border {
+        row: &row,
+        value: dot(&row, &point.u),
+    };
+    let corrected = newton.correct(equations, &mut point.u, border, point.scale, OPTIONS);
+    corrected.is_ok()
+}
+
 impl Run<'_> {
     /// Equations with the switches of an orbit in their order, and the orbit by them. Nothing where the present ones have them so, or where
     /// none are found.
     pub(super) fn ordered(&mut self, at: &CurvePoint) -> Option<(Equations, CurvePoint)> {
+        self.ordered_by(at, at_value)
+    }
+
+    fn ordered_by(&mut self, at: &CurvePoint, solve: Solve) -> Option<(Equations, CurvePoint)> {
         self.equations.compute(&at.u, false);
         if self.equations.failed || self.equations.is_in_order() {
             return None;
         }
         let (mut equations, near) = self.replanned(&at.u)?;
         let mut point = self.point_in(at, &equations, &near)?;
-        let mut newton = Newton::new(&equations);
-        solve::at_value(&mut equations, &mut newton, &mut point.u, OPTIONS).ok()?;
+        if !solve(&mut equations, &mut point) {
+            return None;
+        }
         equations.compute(&point.u, false);
         let fits = !equations.failed && equations.is_in_order();
         fits.then_some((equations, point))
@@ -50,15 +79,16 @@ impl Run<'_> {
         })
     }
 
-    /// The event at a zero, by equations that have the switches in their order there. Folds, where nothing is solved for at a value, and
-    /// crossings of branches, which lie in the direction of the step and its unknowns, are those of the present equations.
+    /// The event at a zero, by equations that have the switches in their order there. Crossings of branches, which lie in the direction of the
+    /// step and its unknowns, are those of the present equations.
     pub(super) fn event(&mut self, step: Step<'_>, zero: &Zero, kind: EventKind) -> Option<Event> {
         let of_value = Test::of(zero.change.test) == Test::Slope;
         let crosses = zero.change.kind == EventKind::BranchPoint;
-        let ordered = if of_value || crosses {
-            None
-        } else {
-            self.ordered(&zero.root.located.point)
+        let at = &zero.root.located.point;
+        let ordered = match (crosses, of_value) {
+            (true, _) => None,
+            (false, true) => self.ordered_by(at, across),
+            (false, false) => self.ordered(at),
         };
         let Some((equations, point)) = ordered else {
             return events::event(self, step, zero, kind);
