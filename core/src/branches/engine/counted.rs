@@ -23,9 +23,9 @@ use crate::continuation::locate::inside;
 use crate::continuation::newton::Newton;
 use crate::event::EventKind;
 
-/// A step is halved so often at most, and not where it is shorter than this part of its value: what is so near to an event, as beside a touch,
-/// is one with it.
-const HALVINGS: usize = 8;
+/// A step is halved until it is shorter than this part of its value, which takes fewer halvings than so many: what is so near to an event, as
+/// beside a touch, is one with it.
+const HALVINGS: usize = 24;
 const SHORTEST: f64 = 1e-7;
 /// Where a part is divided: in the middle, or beside it if there is no orbit found there.
 const PLACES: [f64; 5] = [0.5, 0.3, 0.7, 0.1, 0.9];

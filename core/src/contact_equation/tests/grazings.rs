@@ -206,3 +206,22 @@ fn a_fold_beside_a_change_of_order_is_found() {
         }
     }
 }
+
+crate::oscillator! {
+    /// The same with other springs, driven harder.
+    Harder(x, y, z) {
+        param stiffness;
+        law stop(gap) { gap > 0 => stiffness*gap + 0.1972*gap*dot(gap), else => 0 }
+        ddot(x) + 0.1*dot(x) + 0.5*x + 0.7934*(x - y) + stop(x - 0.2892) = 0.6887*cos(omega*t);
+        ddot(y) + 0.1*dot(y) + 0.3639*y - 0.7934*(x - y) + 0.7934*(y - z) + stop(y - 0.2892) = 0;
+        ddot(z) + 0.1*dot(z) + 0.3639*z - 0.7934*(y - z) - stop(-z - 0.2892) = 0;
+    }
+}
+
+/// A pair of multipliers leaves the circle, one of both comes back at minus one 6e-6 later, in a step of 3e-3: what multipliers count to at its
+/// ends and at the doubling tells that there is more, and the step is divided until it is found.
+#[test]
+fn a_torus_beside_a_doubling_is_found() {
+    let model = Harder { stiffness: 12.7764 };
+    events_agree(&FrequencyResponse::of(&model).from(0.7795).to(1.4889));
+}
