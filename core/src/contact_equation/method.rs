@@ -111,6 +111,15 @@ struct Next {
     resolution: usize,
 }
 
+/// Beside a touch a tangent in other unknowns is a difference across it, and may lead back. The last step tells which way the walk goes.
+fn look_ahead(at: &mut CurvePoint, previous: &CurvePoint, equations: &Equations) {
+    let step: Vec<f64> = at.u.iter().zip(&previous.u).map(|(a, b)| a - b).collect();
+    let newton = Newton::new(equations);
+    if newton.norm().product(at.scale, &step, &at.tangent) < 0.0 {
+        at.tangent = step;
+    }
+}
+
 impl<'b, 'r> ContactBranch<'b, 'r> {
     pub(super) fn new(run: &'b mut Run<'r>, visit: See<'b>) -> Self {
         let watched = if run.problem.asked.stability {
@@ -437,6 +446,9 @@ impl BranchProblem for ContactBranch<'_, '_> {
         }
         halted.point.u.clone_from(&u);
         halted.previous = halted.previous.as_ref().and_then(&mut point);
+        if let Some(previous) = &halted.previous {
+            look_ahead(&mut halted.point, previous, &equations);
+        }
         // A curve is not closed where its first point has no place.
         halted.first = point(&halted.first).unwrap_or_else(|| nowhere(halted.first.scale));
         halted.before = None;
