@@ -325,8 +325,8 @@ impl MPFitter for Search<'_, '_> {
                 let (counted, _) = self.counted(&trial.residuals);
                 deviates.copy_from_slice(&counted);
                 let sum = square(&counted);
-                // What is not a number is no smaller.
-                let is_better = sum < self.least;
+                // What is not a number is no smaller, and distances do not stand for residuals.
+                let is_better = trial.is_complete && sum < self.least;
                 let other = if is_better {
                     self.least = sum;
                     std::mem::replace(&mut self.best, trial)

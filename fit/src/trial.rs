@@ -66,6 +66,8 @@ pub(crate) struct Trial {
     pub(crate) residuals: Vec<f64>,
     /// Sum of the squares of the distances of all values from the curve as it was followed.
     pub(crate) distances: f64,
+    /// Whether every residual is what is asked for: of a hopeless trial some are distances.
+    pub(crate) is_complete: bool,
     /// The first residual of each set.
     pub(crate) first: Vec<usize>,
     curves: Vec<Curve>,
@@ -91,6 +93,7 @@ impl Trial {
             how,
             residuals: Vec::new(),
             distances: 0.0,
+            is_complete: true,
             first: Vec::new(),
             curves: curves.collect::<Result<_, _>>()?,
             beside: Vec::new(),
@@ -165,6 +168,7 @@ impl Trial {
         let distances = beside.feet.iter().map(|(_, foot)| foot.distance);
         self.distances += distances.clone().map(|r| r * r).sum::<f64>();
         if self.how == How::Near || self.distances > bound {
+            self.is_complete &= self.how == How::Near;
             self.residuals.extend(distances);
         } else {
             self.exact(problem, set, &mut beside)?;

@@ -196,6 +196,8 @@ fn known(place: Option<Derivative>) -> Option<Derivative> {
 impl Sensitivities {
     fn add_moving(&mut self, row: &Row, value: f64, by: Vec<Derivative>) {
         if value.is_nan() {
+            let why = "it is of a motion that vanishes, where it has no derivative";
+            self.missing.push(Missing::new(&row.name, why));
             return;
         }
         self.moving.push(Measured {

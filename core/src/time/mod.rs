@@ -83,7 +83,8 @@ pub trait Flow: Send {
     ) -> Result<(), FlowError> {
         let mut here = from;
         for (number, &stop) in stops.iter().enumerate() {
-            let next = stop.clamp(here.min(to), here.max(to));
+            // What is no number is not compared: the motion refuses it.
+            let next = stop.max(here.min(to)).min(here.max(to));
             if next != here {
                 self.advance(here, next, state, Some(tangent), None)?;
             }

@@ -20,14 +20,14 @@ impl Affine {
         };
         let [from, to] = ends;
         let start = state.to_vec();
-        let mut moved = Ok(());
         for mut part in parts(tangent, start.len()) {
             state.copy_from_slice(&start);
             // It is the same motion each time, to the same end, and shown once.
-            moved = self.advance(from, to, state, Some(&mut part.tangent), see.take());
+            let moved = self.advance(from, to, state, Some(&mut part.tangent), see.take());
             part.put(&mut tangent.columns);
+            moved?;
         }
-        moved
+        Ok(())
     }
 
     /// The same, shown at phases between.
@@ -50,7 +50,7 @@ impl Affine {
             state.copy_from_slice(&start);
             let mut here = from;
             for (number, &stop) in stops.iter().enumerate() {
-                let next = stop.clamp(here.min(to), here.max(to));
+                let next = stop.max(here.min(to)).min(here.max(to));
                 if next != here {
                     self.advance(here, next, state, Some(&mut part.tangent), None)?;
                 }
