@@ -31,8 +31,9 @@ const FINER: usize = 4;
 const SECANTS: usize = 12;
 /// The first of them, in units of the orbit.
 const APART: f64 = 1e-6;
-/// Where a curve is solved for around a point at which branches cross, in this part of a step: the cubic through four points is as exact as
-/// the fourth power of that. In units of the orbit it is as far at least: what rounding leaves grows as its inverse.
+/// Where a curve is solved for around a point at which branches cross, in this part of the tangent, which is the step at first: the cubic through
+/// four points is as exact as the fourth power of that. They begin as far apart in units of the orbit, at least: what rounding leaves grows as
+/// its inverse.
 const AROUND: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
 const BESIDE: f64 = 5e-3;
 const ASIDE: f64 = 5e-4;

@@ -23,8 +23,8 @@ use crate::continuation::locate::inside;
 use crate::continuation::newton::Newton;
 use crate::event::EventKind;
 
-/// A step is halved until it is shorter than this part of its value, which takes fewer halvings than so many: what is so near to an event, as
-/// beside a touch, is one with it.
+/// A step is divided until it is shorter than this part of its value, which takes fewer halvings than so many: what is so near to an event, as
+/// beside a touch, is one with it. Near a fold that is far along the branch.
 const HALVINGS: usize = 24;
 const SHORTEST: f64 = 1e-7;
 /// Where a part is divided: in the middle, or beside it if there is no orbit found there.
