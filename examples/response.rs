@@ -52,11 +52,10 @@ fn describe(branch: &Branch) {
     println!("{}\n", branch.model.equation);
     if let (Some(first), Some(last)) = (points.first(), points.last()) {
         let (count, from, to) = (points.len(), first.value, last.value);
-        let harmonics = points.iter().map(|point| point.orbit.harmonics()).max();
-        let most = harmonics.unwrap_or(0);
-        println!("points     {count}, omega from {from} to {to}, up to {most} harmonics");
+        println!("points     {count}, omega from {from} to {to}");
     }
     println!("ended      {}", branch.stopped);
+    println!("method     {}", branch.method().unwrap_or("unknown"));
     for event in &branch.events {
         let (kind, error) = (event.kind.to_string(), event.error);
         let omega = event.point.value;

@@ -6,7 +6,9 @@
 use std::time::Duration;
 
 use cpu_time::ThreadTime;
-use hertzian::{Branch, ContactEquation, Error, FrequencyResponse, Shooting, System, oscillator};
+use hertzian::{
+    Branch, ContactEquation, Error, FrequencyResponse, HarmonicBalance, Shooting, System, oscillator,
+};
 
 oscillator! {
     /// One-sided contact with a linear spring.
@@ -106,7 +108,7 @@ fn run(figure: &Figure, method: &str, tolerance: f64) -> Result<Branch, Error> {
     match method {
         "shooting" => request.by(Shooting::new()).run(),
         "contact" => request.by(ContactEquation::new()).run(),
-        _ => request.run(),
+        _ => request.by(HarmonicBalance::new()).run(),
     }
 }
 

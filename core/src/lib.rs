@@ -134,7 +134,7 @@ pub use report::error::FileError;
 pub use report::export;
 #[doc(hidden)]
 pub use response::stages;
-pub use response::{FrequencyResponse, OrbitMethod, Resume};
+pub use response::{Choice, Chosen, FrequencyResponse, OrbitMethod, Resume};
 pub use sensitivity::Derivative;
 pub use shooting::Shooting;
 pub use system::System;

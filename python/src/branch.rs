@@ -195,6 +195,12 @@ impl PyBranch {
         PyStop(self.held().stopped)
     }
 
+    /// What followed it: "harmonic balance", "shooting" or "contact equation"; None of a branch from a file that does not say so.
+    #[getter]
+    fn method(&self) -> Option<&'static str> {
+        self.held().method()
+    }
+
     /// Counts of what the continuation cost: dict of int.
     #[getter]
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -4,7 +4,8 @@ use hertzian::bifurcation::Settling;
 use hertzian::{ContactEquation, HarmonicBalance, Shooting};
 use pyo3::prelude::*;
 
-/// Orbits as Fourier series whose residual vanishes in as many harmonics: the method unless another one is asked for.
+/// Orbits as Fourier series whose residual vanishes in as many harmonics: the method where no law opens or has a corner, unless another one is
+/// asked for.
 ///
 /// ``harmonics``: the same number at every point, in place of as many as the tolerance asks for. ``doublings``: whether period doublings
 /// are located too. ``bifurcations``: whether all bifurcations are, and not folds alone. ``symmetric``: whether orbits have the symmetry

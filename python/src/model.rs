@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use hertzian::generic::Declaration;
-use hertzian::{Bifurcations, FrequencyResponse, HarmonicBalance, Model, Shooting, System};
+use hertzian::{Bifurcations, FrequencyResponse, Model, Shooting, System};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -59,7 +59,7 @@ impl PyModel {
         Ok(model)
     }
 
-    /// What was asked for of orbits, by the balance unless another method is named, in a range if there is one: with all of its options.
+    /// What was asked for of orbits, by the method that fits unless one is named, in a range if there is one: with all of its options.
     fn asked(
         &self,
         py: Python<'_>,
@@ -68,7 +68,7 @@ impl PyModel {
         range: Option<[f64; 2]>,
     ) -> PyResult<Asked> {
         let given = Given::new(py, function, options)?;
-        let asked = self.asked_of(&given, Method::Balance(HarmonicBalance::new()), range)?;
+        let asked = self.asked_of(&given, Method::Chosen, range)?;
         given.end()?;
         Ok(asked)
     }
@@ -103,7 +103,7 @@ impl PyModel {
     ) -> PyResult<(Given<'py>, Arc<dyn System>, Watch)> {
         let given = Given::new(py, function, options)?;
         let system = self.system();
-        let request = Request::Balance(FrequencyResponse::of(&system));
+        let request = Request::Chosen(FrequencyResponse::of(&system));
         let owner = Owner::request(&system, &request);
         let watch = Watch::new(given.progress()?, owner);
         Ok((given, system, watch))
@@ -187,8 +187,9 @@ impl PyModel {
     /// frequency ``omega``. ``period``: of the orbits, in periods of the declaration. ``tolerance``: relative accuracy of peak-to-peak.
     /// ``accuracy_of``: the output or coordinate that the tolerance and the errors of orbits are of, all coordinates by default.
     /// ``stability``: whether Floquet multipliers are computed. ``near_orbit``, ``near_state``: the first orbit is near this one, or near
-    /// the motion from this state. ``by``: a method, `HarmonicBalance`, `Shooting` or `ContactEquation`. ``harmonics``, ``doublings``,
-    /// ``bifurcations``, ``symmetric``: options of the balance. ``keep``: a file in which the branch is kept while it is followed.
+    /// the motion from this state. ``by``: a method, `HarmonicBalance`, `Shooting` or `ContactEquation`, by default the contact
+    /// equation where a law opens or has a corner, and the balance elsewhere. ``harmonics``, ``doublings``, ``bifurcations``, ``symmetric``: options of
+    /// the balance, which is the method where one of them is given. ``keep``: a file in which the branch is kept while it is followed.
     /// ``progress``: called with a `Progress` at every orbit; ends the computation by returning ``False``.
     ///
     /// A branch that ends early is not an error: `Branch.stopped` says why it ended. Raises an exception if no first orbit is found.
@@ -363,6 +364,10 @@ impl PyModel {
             py,
             watch,
             |cancel, see| match request {
+                Request::Chosen(request) => {
+                    let request = Bifurcations::starting_with(request.cancel(cancel));
+                    search.on(request, points).run_with(see)
+                }
                 Request::Balance(request) => {
                     let request = request.bifurcations(true).cancel(cancel);
                     search

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use hertzian::{
-    ContactEquation, FrequencyResponse, HarmonicBalance, OrbitMethod, Shooting, System,
+    Chosen, ContactEquation, FrequencyResponse, HarmonicBalance, OrbitMethod, Shooting, System,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -17,6 +17,7 @@ use crate::point::PyPoint;
 /// A request by one of the methods.
 #[derive(Clone)]
 pub enum Request {
+    Chosen(FrequencyResponse),
     Balance(FrequencyResponse<HarmonicBalance>),
     Shooting(FrequencyResponse<Shooting>),
     ContactEquation(FrequencyResponse<ContactEquation>),
@@ -26,6 +27,7 @@ pub enum Request {
 macro_rules! by_any {
     ($request:expr, $name:ident => $does:expr) => {
         match $request {
+            $crate::request::Request::Chosen($name) => $does,
             $crate::request::Request::Balance($name) => $does,
             $crate::request::Request::Shooting($name) => $does,
             $crate::request::Request::ContactEquation($name) => $does,
@@ -37,19 +39,22 @@ pub(crate) use by_any;
 /// A method with its options.
 #[derive(Clone, Copy)]
 pub enum Method {
+    Chosen,
     Balance(HarmonicBalance),
     Shooting(Shooting),
     ContactEquation(ContactEquation),
 }
 
 impl Method {
-    /// What `by` says, or else the balance with options of its own.
+    /// What `by` says, or else the default: where that is chosen, and options of the balance are given, the balance with these.
     pub fn of(given: &Given<'_>, default: Self) -> PyResult<Self> {
         let by = given.any("by")?;
         let options = BalanceOptions::of(given)?;
         let Some(by) = by else {
             return match default {
-                Self::Balance(balance) => Ok(Self::Balance(options.applied(balance))),
+                Self::Chosen if options.any().is_some() => {
+                    Ok(Self::Balance(options.applied(HarmonicBalance::new())))
+                }
                 default => options.refused_by("default here").map(|()| default),
             };
         };
@@ -102,17 +107,23 @@ impl BalanceOptions {
         balance
     }
 
-    /// None is given where they would be lost.
-    fn refused_by(&self, which: &str) -> PyResult<()> {
+    /// The first one that is given.
+    fn any(&self) -> Option<&'static str> {
         let given = [
             ("harmonics", self.harmonics.is_some()),
             ("doublings", self.doublings.is_some()),
             ("bifurcations", self.bifurcations.is_some()),
             ("symmetric", self.symmetric.is_some()),
         ];
-        match given.iter().find(|(_, given)| *given) {
+        let mut given = given.into_iter().filter(|(_, given)| *given);
+        given.next().map(|(name, _)| name)
+    }
+
+    /// None is given where they would be lost.
+    fn refused_by(&self, which: &str) -> PyResult<()> {
+        match self.any() {
             None => Ok(()),
-            Some((name, _)) => Err(PyTypeError::new_err(format!(
+            Some(name) => Err(PyTypeError::new_err(format!(
                 "{name} is an option of the harmonic balance, and the method is the one {which}: by=HarmonicBalance({name}=..)"
             ))),
         }
@@ -124,6 +135,7 @@ impl Request {
     pub fn of(system: &Arc<dyn System>, given: &Given<'_>, default: Method) -> PyResult<Self> {
         let request = FrequencyResponse::of(system);
         Ok(match Method::of(given, default)? {
+            Method::Chosen => Self::Chosen(with(request.by(Chosen::new()), given)?),
             Method::Balance(method) => Self::Balance(with(request.by(method), given)?),
             Method::Shooting(method) => Self::Shooting(with(request.by(method), given)?),
             Method::ContactEquation(method) => {
@@ -135,6 +147,7 @@ impl Request {
     /// The same in a range.
     pub fn between(self, from: f64, to: f64) -> Self {
         match self {
+            Self::Chosen(request) => Self::Chosen(request.from(from).to(to)),
             Self::Balance(request) => Self::Balance(request.from(from).to(to)),
             Self::Shooting(request) => Self::Shooting(request.from(from).to(to)),
             Self::ContactEquation(request) => Self::ContactEquation(request.from(from).to(to)),

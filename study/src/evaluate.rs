@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use hertzian::bifurcation::{Bifurcations, Diagram, Reason, Settling};
 use hertzian::error::{ErrorKind, chain};
 use hertzian::{
-    Branch, Cancel, ContactEquation, Error, FrequencyResponse, HarmonicBalance, OrbitMethod,
+    Branch, Cancel, Chosen, ContactEquation, Error, FrequencyResponse, HarmonicBalance, OrbitMethod,
     Shooting, Valued,
 };
 
@@ -110,17 +110,20 @@ impl Of<'_> {
         if let Some(points) = asked.max_points {
             request = request.max_points(points);
         }
-        let balance = match asked.what {
-            What::Solutions => Method::Shooting,
-            _ => Method::Balance,
+        let default = match asked.what {
+            What::Solutions => Some(Method::Shooting),
+            // An option of the balance.
+            What::Response if asked.bifurcations => Some(Method::Balance),
+            _ => None,
         };
-        match asked.method.unwrap_or(balance) {
-            Method::Balance => {
+        match asked.method.or(default) {
+            None => self.by(request, &system),
+            Some(Method::Balance) => {
                 let balance = HarmonicBalance::new().bifurcations(asked.bifurcations);
                 self.by(request.by(balance), &system)
             }
-            Method::Shooting => self.by(request.by(Shooting::new()), &system),
-            Method::ContactEquation => self.by(request.by(ContactEquation::new()), &system),
+            Some(Method::Shooting) => self.by(request.by(Shooting::new()), &system),
+            Some(Method::ContactEquation) => self.by(request.by(ContactEquation::new()), &system),
         }
     }
 
@@ -157,18 +160,12 @@ impl Of<'_> {
         &self,
         request: FrequencyResponse<M>,
     ) -> Result<Diagram, Error> {
-        let asked = &self.study.plan.request;
-        let method = asked.method.unwrap_or(Method::Balance);
-        match method {
-            Method::Balance => {
-                self.diagram(Bifurcations::starting_with(request).by(HarmonicBalance::new()))
-            }
-            Method::Shooting => {
-                self.diagram(Bifurcations::starting_with(request).by(Shooting::new()))
-            }
-            Method::ContactEquation => {
-                self.diagram(Bifurcations::starting_with(request).by(ContactEquation::new()))
-            }
+        let request = Bifurcations::starting_with(request);
+        match self.study.plan.request.method {
+            None => self.diagram(request.by(Chosen::new())),
+            Some(Method::Balance) => self.diagram(request.by(HarmonicBalance::new())),
+            Some(Method::Shooting) => self.diagram(request.by(Shooting::new())),
+            Some(Method::ContactEquation) => self.diagram(request.by(ContactEquation::new())),
         }
     }
 

@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use clap::{Parser, ValueEnum};
-use hertzian::System;
 use hertzian::generic::Declaration;
-use hertzian::law::Variation;
+use hertzian::{Choice, System};
 use serde::{Deserialize, Serialize};
 
 use super::declared::Texts;
@@ -66,7 +65,7 @@ fn once() -> usize {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// By the contact equation where a contact opens, else by the balance.
+    /// As [`Choice`] has it: by the contact equation where a law opens or has a corner, else by the balance.
     #[default]
     Automatic,
     /// Harmonic balance.
@@ -189,7 +188,9 @@ impl Asked {
     /// The method that is meant.
     pub fn method(&self, model: &dyn System) -> By {
         match self.by {
-            Method::Automatic if opens(model) => By::ContactEquation,
+            Method::Automatic if Choice::of(model) != Choice::HarmonicBalance => {
+                By::ContactEquation
+            }
             Method::Automatic | Method::Balance => By::Balance,
             Method::Shooting => By::Shooting,
             Method::ContactEquation => By::ContactEquation,
@@ -212,10 +213,8 @@ impl Asked {
         if self.period != 1 {
             words.push(format!("--period {}", self.period));
         }
-        if by != By::Balance {
-            let name = by.to_possible_value();
-            words.extend(name.map(|name| format!("--by {}", name.get_name())));
-        }
+        let name = by.to_possible_value();
+        words.extend(name.map(|name| format!("--by {}", name.get_name())));
         if let Some(depth) = self.depth {
             words.push(format!("--bifurcations --follow {depth}"));
         }
@@ -232,15 +231,4 @@ fn usual() -> Result<Options, Fault> {
     let read = Options::try_parse_from(["response"]);
     let read = read.map_err(|error| Fault::request(error.to_string()))?;
     Ok(USUAL.get_or_init(|| read).clone())
-}
-
-/// Whether a contact opens: a piece of its law has no force, and another has.
-fn opens(model: &dyn System) -> bool {
-    let contacts = model.facts().contacts.iter();
-    let mut laws = contacts.map(|contact| model.law(contact.law).facts());
-    laws.any(|law| {
-        let free = |variation| variation == Variation::Zero;
-        let mut pieces = law.pieces.iter();
-        law.pieces.len() > 1 && pieces.any(|piece| free(piece.force))
-    })
 }

@@ -125,7 +125,7 @@ pub fn of(traced: &Traced, plot: &str, effort: Effort) -> Result<Curve, Fault> {
     if let Some(point) = first.points.first() {
         first.measured(&wanted, point)?;
     }
-    let by = traced.options.method();
+    let by = traced.by();
     let mut notes = Vec::new();
     if effort == Effort::Full {
         notes.extend(run::remarks_on(first, &*traced.model));
@@ -162,7 +162,7 @@ pub fn of(traced: &Traced, plot: &str, effort: Effort) -> Result<Curve, Fault> {
 
 /// The command line that computes the same; what leads is drawn anyway.
 fn command(traced: &Traced, first: &Branch, wanted: &Wanted) -> String {
-    let command = traced.asked.command(traced.options.method());
+    let command = traced.asked.command(traced.by());
     if *wanted == first.leading() {
         command
     } else {

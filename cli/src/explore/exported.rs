@@ -129,7 +129,7 @@ fn rust(traced: &Traced, texts: &Texts) -> Result<String, Fault> {
     }
     let mut values = vec![0.0; declaration.facts().parameters.len()];
     declaration.values(&mut values);
-    let by = traced.options.method();
+    let by = traced.by();
     let several = traced.diagram.branches.len() > 1;
     Ok(lines::of(asked, &declaration, &values, by, several))
 }

@@ -79,11 +79,12 @@ fn request(text: &mut String, asked: &Asked, by: By) -> std::fmt::Result {
     } else {
         by
     };
-    options.extend(match by {
-        By::Balance => None,
-        By::Shooting => Some(".by(hertzian::Shooting::new())".to_owned()),
-        By::ContactEquation => Some(".by(hertzian::ContactEquation::new())".to_owned()),
-    });
+    let method = match by {
+        By::Balance => "HarmonicBalance",
+        By::Shooting => "Shooting",
+        By::ContactEquation => "ContactEquation",
+    };
+    options.push(format!(".by(hertzian::{method}::new())"));
     writeln!(text, "    {};", options.join("\n        "))
 }
 

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use hertzian::bifurcation::Diagram;
 use hertzian::error::ErrorKind;
 use hertzian::{
-    Branch, Cancel, ContactEquation, Error, FrequencyResponse, Point, Shooting, Stop, System,
+    Branch, Cancel, Error, FrequencyResponse, Point, Stop, System,
     Verdict,
 };
 
@@ -62,6 +62,11 @@ impl std::fmt::Debug for Traced {
 }
 
 impl Traced {
+    /// By what the orbits of the first curve were asked for.
+    pub fn by(&self) -> By {
+        self.options.by.unwrap_or(By::Balance)
+    }
+
     /// All branches as they are written to files, with everything that is read off their orbits.
     ///
     /// # Errors
@@ -219,11 +224,7 @@ fn covering(
     request: FrequencyResponse,
     visit: &mut dyn FnMut(hertzian::Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Diagram, Error> {
-    match options.method() {
-        By::Balance => covered::find(options, request, visit),
-        By::Shooting => covered::find(options, request.by(Shooting::new()), visit),
-        By::ContactEquation => covered::find(options, request.by(ContactEquation::new()), visit),
-    }
+    covered::by_method(options, request, visit)
 }
 
 /// Takes the line that shows progress on a terminal, and tells it.

@@ -4,7 +4,7 @@ use hertzian::Side;
 use hertzian::chart::{Chart, Curve, Scale, Series, event_markers};
 use hertzian::error::chain;
 use hertzian::export;
-use hertzian::{Branch, Event, EventKind, FrequencyResponse, Stop, System};
+use hertzian::{Branch, Event, EventKind, FrequencyResponse, HarmonicBalance, Stop, System};
 
 use super::exact;
 use super::figure::{Drawing, Table, Task, Value};
@@ -176,7 +176,7 @@ impl<'t> Curves<'t> {
     }
 
     /// Traces a curve until it ends or is interrupted.
-    fn followed(&mut self, case: &Case, request: &FrequencyResponse) -> Result<Branch, String> {
+    fn followed(&mut self, case: &Case, request: &FrequencyResponse<HarmonicBalance>) -> Result<Branch, String> {
         let followed = request.clone().cancel(self.task.cancel).run();
         let branch = followed.map_err(|error| chain(&error).to_string())?;
         self.add(&case.label, &branch);
@@ -300,10 +300,11 @@ impl<'t> Curves<'t> {
 }
 
 /// What is asked for. A picture alone needs no more than the eye can see.
-fn request(system: &dyn System, case: &Case) -> FrequencyResponse {
+fn request(system: &dyn System, case: &Case) -> FrequencyResponse<HarmonicBalance> {
     let [from, to] = case.range;
     let tolerance = if case.exact.is_empty() { 1e-4 } else { 1e-6 };
     FrequencyResponse::of(system)
+        .by(HarmonicBalance::new())
         .from(from)
         .to(to)
         .tolerance(tolerance)

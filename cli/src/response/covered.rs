@@ -6,10 +6,12 @@ use std::ops::ControlFlow;
 use hertzian::attractors::basin::Fate;
 use hertzian::bifurcation::{Bifurcations, Diagram, Reason, Searched, Settling};
 use hertzian::export::Decimal;
-use hertzian::{Error, FrequencyResponse, OrbitMethod, Progress, Stop};
+use hertzian::{
+    ContactEquation, Error, FrequencyResponse, OrbitMethod, Progress, Shooting, Stop,
+};
 
 use super::bifurcations::describe;
-use super::options::Options;
+use super::options::{By, Options};
 use super::value::in_diagram;
 
 /// How the range of a request is searched, unless one branch alone is wanted.
@@ -50,6 +52,23 @@ pub fn find<M: OrbitMethod>(
     match settling.filter(|_| !elsewhere) {
         Some(settling) => all.cover(settling).run_with(visit),
         None => all.run_with(visit),
+    }
+}
+
+/// The same by the method that was asked for, or else by the one that fits.
+///
+/// # Errors
+/// As that of the request.
+pub fn by_method(
+    options: &Options,
+    request: FrequencyResponse,
+    visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
+) -> Result<Diagram, Error> {
+    match options.method() {
+        None => find(options, request, visit),
+        Some(By::Balance) => find(options, request.by(options.balance()), visit),
+        Some(By::Shooting) => find(options, request.by(Shooting::new()), visit),
+        Some(By::ContactEquation) => find(options, request.by(ContactEquation::new()), visit),
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
+use hertzian::HarmonicBalance;
 use hertzian::chart::View;
 use hertzian::observe::Wanted;
 use hertzian::sensitivity::Uncertain;
@@ -66,26 +67,27 @@ pub struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count)]
     pub period: usize,
 
-    /// How the orbits of the curve are computed; --bifurcations and --track go by shooting [default: balance; of a --structure
-    /// shooting where its laws are made of straight lines or a force jumps, else contact-equation]
+    /// How the orbits of the curve are computed; --bifurcations and --track go by shooting [default: contact-equation where a law
+    /// opens or has a corner, else balance; of a --structure shooting where its laws are made of straight lines or a force jumps, else
+    /// contact-equation]
     #[arg(long, value_enum, value_name = "METHOD")]
     pub by: Option<By>,
 
-    /// Harmonics per period of the excitation [default: from the tolerance]
+    /// Harmonics per period of the excitation, by the balance [default: from the tolerance]
     #[arg(long, value_name = "COUNT", value_parser = count)]
     pub harmonics: Option<usize>,
 
-    /// Samples per period of the excitation [default: from the harmonics]
+    /// Samples per period of the excitation, by the balance [default: from the harmonics]
     #[arg(long, value_name = "COUNT", value_parser = count)]
     pub samples: Option<usize>,
 
-    /// How the harmonics of the contact force are computed
-    #[arg(long, value_enum, default_value_t = Aft::Switched)]
-    pub aft: Aft,
+    /// How the harmonics of the contact force are computed, by the balance [default: switched]
+    #[arg(long, value_enum)]
+    pub aft: Option<Aft>,
 
-    /// How Floquet multipliers are computed
-    #[arg(long, value_enum, value_name = "METHOD", default_value_t = Multipliers::Default)]
-    pub multipliers: Multipliers,
+    /// How the balance computes Floquet multipliers [default: default]
+    #[arg(long, value_enum, value_name = "METHOD")]
+    pub multipliers: Option<Multipliers>,
 
     /// Relative accuracy asked of peak-to-peak
     #[arg(
@@ -391,7 +393,7 @@ impl Options {
                 "--backbone is of peak-to-peak, and --stack draws amplitudes: leave one out";
             return Some(fault.to_owned());
         }
-        let samples = given.has("samples") && self.aft == Aft::Switched;
+        let samples = given.has("samples") && !self.is_sampled();
         samples.then(|| {
             "--samples belongs to --aft sampled or --aft primitive: nothing is sampled here"
                 .to_owned()
@@ -402,21 +404,49 @@ impl Options {
     fn of_the_balance(&self, given: &Given<'_>) -> Option<String> {
         let options = ["harmonics", "samples", "aft", "multipliers"];
         let mut options = options.into_iter().filter(|option| given.has(option));
-        let option = options.next().filter(|_| self.method() != By::Balance)?;
+        let option = options.next().filter(|_| self.method() != Some(By::Balance))?;
         Some(format!(
             "--{option} belongs to --by balance and would do nothing here"
         ))
     }
 
-    /// How the orbits of the curve are computed.
-    pub fn method(&self) -> By {
+    /// How the orbits of the curve are computed, where that was asked for: by the balance where an option of it was given. `None` where the
+    /// library chooses.
+    pub fn method(&self) -> Option<By> {
         let of_structures = self.structure.file.is_some();
+        let of_the_balance = self.harmonics.is_some()
+            || self.samples.is_some()
+            || self.aft.is_some()
+            || self.multipliers.is_some();
         let default = if of_structures {
-            By::Shooting
+            Some(By::Shooting)
         } else {
-            By::Balance
+            of_the_balance.then_some(By::Balance)
         };
-        self.by.unwrap_or(default)
+        self.by.or(default)
+    }
+
+    /// The balance with its options.
+    pub fn balance(&self) -> HarmonicBalance {
+        let mut balance = HarmonicBalance::new();
+        if let Some(aft) = self.aft {
+            balance = balance.aft(aft.into());
+        }
+        if let Some(multipliers) = self.multipliers {
+            balance = balance.multipliers(multipliers.into());
+        }
+        if let Some(harmonics) = self.harmonics {
+            balance = balance.harmonics(harmonics);
+        }
+        if let Some(samples) = self.samples {
+            balance = balance.samples(samples);
+        }
+        balance
+    }
+
+    /// Whether contact forces are sampled.
+    pub fn is_sampled(&self) -> bool {
+        self.aft.is_some_and(|aft| aft != Aft::Switched)
     }
 
     /// Name of what varies, as the models call it.

@@ -9,8 +9,7 @@ use hertzian::error::{ErrorKind, chain};
 use hertzian::export;
 use hertzian::observe::Wanted;
 use hertzian::{
-    Branch, Cancel, ContactEquation, Error, FrequencyResponse, Model, OrbitError, Point, Shooting,
-    Stop, System, remarks,
+    Branch, Cancel, Error, FrequencyResponse, Model, OrbitError, Point, Stop, System, remarks,
 };
 
 use super::backbone::{self, Backbone};
@@ -21,7 +20,7 @@ use super::files::{self, Record};
 use super::model_file::{ModelError, Varied};
 use super::models::model;
 use super::near;
-use super::options::{By, Options};
+use super::options::Options;
 use super::panels;
 use super::places;
 use super::progress::{Progress, Seen};
@@ -128,19 +127,13 @@ pub fn run(
         let request;
         (request, note) = near::of(options, &*model, plain)?;
         let visit = |progress: hertzian::Progress<'_>| seen.see(progress);
-        match options.method() {
-            By::Balance => covered::find(options, request, visit)?,
-            By::Shooting => covered::find(options, request.by(Shooting::new()), visit)?,
-            By::ContactEquation => {
-                covered::find(options, request.by(ContactEquation::new()), visit)?
-            }
-        }
+        covered::by_method(options, request, visit)?
     };
     let covered = diagram.branches.iter();
     let mut branches: Vec<Branch> = covered.map(|found| found.branch.clone()).collect();
     let mut warnings = remarks_on(&branches[0], &*model);
     warnings.extend(note);
-    warnings.extend(windings(&branches).chain(laborious(options, &branches)));
+    warnings.extend(windings(&branches).chain(laborious(&branches)));
     let solutions = solutions_at(options, &branches, &mut warnings);
     let missing = panels::write(options, &branches, &solutions)?;
     let all_panels = missing.is_empty();
@@ -182,6 +175,13 @@ pub fn run(
     let (sensitivities, underived) = sensitive::found(options, &branches, cancel, &mut seen);
     let all_derived = underived.is_none();
     warnings.extend(underived);
+    if options.method().is_none() && (options.csv.is_some() || options.json.is_some()) {
+        // Files have a column for everything, whatever the method that was chosen.
+        for branch in &mut branches {
+            let incomplete = branch.complete_all().err();
+            warnings.extend(incomplete.map(|error| chain(&error).to_string()));
+        }
+    }
     let reduction = match &reduced {
         Some(reduced) => Some(reduced.of(&branches)?),
         None => None,
@@ -278,10 +278,7 @@ pub(crate) fn windings<'b>(
 const LABORIOUS: usize = 1000;
 
 /// Where the balance takes so many harmonics that another method is the better one.
-fn laborious(options: &Options, branches: &[Branch]) -> Option<String> {
-    if options.method() != By::Balance {
-        return None;
-    }
+fn laborious(branches: &[Branch]) -> Option<String> {
     let points = branches.iter().flat_map(|branch| &branch.points);
     let mut unknowns: Vec<usize> = points
         .map(|point| point.orbit.coordinates() * (2 * point.orbit.harmonics() + 1))
@@ -379,20 +376,12 @@ pub fn in_range(options: &Options, model: &dyn System) -> FrequencyResponse {
 /// The options in the library's terms.
 pub(crate) fn request(options: &Options, model: &dyn System) -> FrequencyResponse {
     let mut request = in_range(options, model)
-        .tolerance(options.tolerance)
-        .aft(options.aft.into())
-        .multipliers(options.multipliers.into());
+        .tolerance(options.tolerance);
     if let Some(points) = options.max_points {
         request = request.max_points(points);
     }
     if let Some(name) = &options.accuracy_of {
         request = request.accuracy_of(name);
-    }
-    if let Some(harmonics) = options.harmonics {
-        request = request.harmonics(harmonics);
-    }
-    if let Some(samples) = options.samples {
-        request = request.samples(samples);
     }
     if let Some(path) = &options.keep {
         request = request.keep(path);

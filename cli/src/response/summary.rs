@@ -5,9 +5,9 @@ use std::path::Path;
 
 use hertzian::chart::Chart;
 use hertzian::export::Decimal;
-use hertzian::{Branch, Event, EventKind, Point, System, Verdict};
+use hertzian::{Branch, Choice, Event, EventKind, Point, System, Verdict};
 
-use super::options::{Aft, Options};
+use super::options::Options;
 use super::value::of_varied;
 use crate::model::ModelOptions;
 
@@ -86,6 +86,7 @@ fn write_all(
         None => equation(text, options)?,
     }
     range(text, branch)?;
+    method(text, options, branch)?;
     folds(text, branch)?;
     stability(text, branch)?;
     let solutions = at.iter().map(|point| {
@@ -168,14 +169,16 @@ fn range(text: &mut String, branch: &Branch) -> fmt::Result {
     if let Some((first, last)) = ends {
         let all = || branch.points.iter().map(|point| point.orbit.harmonics());
         let (least, most) = (all().min().unwrap_or(0), all().max().unwrap_or(0));
-        let harmonics = if least == most {
-            format!("{most}")
+        let harmonics = if most == 0 {
+            String::new()
+        } else if least == most {
+            format!(", {most} harmonics")
         } else {
-            format!("{least} to {most}")
+            format!(", {least} to {most} harmonics")
         };
         writeln!(
             text,
-            "points     {}, {} from {} to {}, {harmonics} harmonics",
+            "points     {}, {} from {} to {}{harmonics}",
             branch.points.len(),
             branch.varied,
             Decimal::rounded(first.value, 6),
@@ -183,6 +186,25 @@ fn range(text: &mut String, branch: &Branch) -> fmt::Result {
         )?;
     }
     writeln!(text, "ended      {}", branch.stopped)
+}
+
+/// The method that was chosen, and why.
+fn method(text: &mut String, options: &Options, branch: &Branch) -> fmt::Result {
+    let chosen = options.resume.is_none() && options.method().is_none();
+    let followed = branch.method().zip(branch.system()).filter(|_| chosen);
+    let Some((method, system)) = followed else {
+        return Ok(());
+    };
+    let choice = Choice::of(system);
+    if choice.method() == method {
+        writeln!(text, "method     {choice}")
+    } else {
+        writeln!(
+            text,
+            "method     {method}, since the {} leads to no such branch",
+            choice.method()
+        )
+    }
 }
 
 fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
@@ -296,7 +318,7 @@ fn list(text: &mut String, label: &str, entries: impl Iterator<Item = String>) -
 
 /// What sampling does to a force that is not smooth.
 fn caution(text: &mut String, options: &Options) -> fmt::Result {
-    let reason = if options.aft == Aft::Switched {
+    let reason = if !options.is_sampled() {
         return Ok(());
     } else if options.model.loses_contact() {
         "damping switches with contact"

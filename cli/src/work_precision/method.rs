@@ -6,7 +6,8 @@ use std::time::Instant;
 use cpu_time::ThreadTime;
 use hertzian::system::System;
 use hertzian::{
-    Aft, Branch, Complex, ContactEquation, EventKind, FrequencyResponse, OrbitMethod, Shooting,
+    Aft, Branch, Complex, ContactEquation, EventKind, FrequencyResponse, HarmonicBalance,
+    OrbitMethod, Shooting,
 };
 
 use super::problem::Problem;
@@ -310,6 +311,7 @@ pub struct Reference {
 pub fn reference(problem: &Problem) -> Result<Option<Reference>, hertzian::Error> {
     let [from, to] = problem.range;
     let branch = FrequencyResponse::of(&*problem.compiled)
+        .by(HarmonicBalance::new())
         .from(from)
         .to(to)
         .stability(false)

@@ -57,7 +57,7 @@ pub(super) fn contains<M: OrbitMethod>(
     if branch.period() != states.len() {
         return false;
     }
-    let found = branch.branch.at(value).unwrap_or_default();
+    let found = branch.branch.plainly_at(value).unwrap_or_default();
     found.iter().any(|found| passes(found, states))
         || around(branch, value).any(|near| {
             // A series may not resolve a state, and an orbit between two others may be lost.

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::by_shooting::{self, Second};
-use super::following::{Following, Left, by_any};
+use super::following::{self, Following, Left, by_any};
 use crate::balance::symmetry::is_broken;
 use crate::balance_branch::check::Asked;
 use crate::balance_branch::context::BranchContext;
@@ -14,6 +14,7 @@ use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::Progress;
 use crate::branches::request::{Guess, Request};
+use crate::branches::stability::Stability;
 use crate::error::Error;
 use crate::event::Side;
 use crate::model::request::RequestError;
@@ -23,12 +24,21 @@ use crate::system::System;
 
 impl Branch {
     /// Every orbit of the branch at a value of what it varies, in branch order; empty where the branch does not pass. Harmonics
-    /// follow the tolerance as along the branch.
+    /// follow the tolerance as along the branch. Of a branch by the contact equation they are [completed](Self::complete).
     ///
     /// # Errors
     /// If the value is not finite, an orbit between two points cannot be computed, or the branch was read from a file and has no
     /// [model](Self::attach).
     pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
+        let found = self.plainly_at(value)?;
+        if !self.following()?.completes() {
+            return Ok(found);
+        }
+        found.iter().map(|point| self.complete(point)).collect()
+    }
+
+    /// The same, with what the method reads off.
+    pub(crate) fn plainly_at(&self, value: f64) -> Result<Vec<Point>, Error> {
         validate::finite("at", value)?;
         let following = self.following()?;
         let places = self.points.iter().map(|point| point.value);
@@ -46,9 +56,16 @@ impl Branch {
             return Ok(Vec::new());
         };
         let (shooting, request) = (following.shooting(), following.request());
-        let (shooting, request) = by_shooting::of_period(shooting, request, point.orbit.period);
+        let (shooting, mut request) = by_shooting::of_period(shooting, request, point.orbit.period);
+        let verdicts = request.stability;
+        // Errors of shooting are known with its maps.
+        request.stability |= following.completes();
         let asked = shooting::Asked::of(&request, &shooting);
-        at::at(&asked.problem(value, value)?, self, value)
+        let mut found = at::at(&asked.problem(value, value)?, self, value)?;
+        for point in found.iter_mut().filter(|_| !verdicts) {
+            point.stability = Stability::unknown();
+        }
+        Ok(found)
     }
 
     /// The branch that begins at one of the events of this one, in the same range, by the same method: see
@@ -126,6 +143,34 @@ impl Branch {
         }
         let following = self.following()?;
         by_shooting::completed(following.request(), following.shooting(), point)
+    }
+
+    /// [Completes](Self::complete) every orbit of the branch, as tables that have more than extremes take it.
+    ///
+    /// ```
+    /// use hertzian::FrequencyResponse;
+    ///
+    /// hertzian::oscillator! {
+    ///     Stopped(x) {
+    ///         law stop(gap) { gap > 0 => 10*gap, else => 0 }
+    ///         ddot(x) + 0.1*dot(x) + x + stop(x - 1) = 0.3*cos(omega*t);
+    ///     }
+    /// }
+    ///
+    /// let mut branch = FrequencyResponse::of(&Stopped {}).from(1.0).to(1.1).run()?;
+    /// branch.complete_all()?;
+    /// let impulse = branch.points.iter().filter_map(|point| point.observed.contacts[0].impulse);
+    /// assert!(impulse.sum::<f64>() > 0.0);
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`complete`](Self::complete), at the first orbit where it fails; those before it are completed.
+    pub fn complete_all(&mut self) -> Result<(), Error> {
+        for index in 0..self.points.len() {
+            self.points[index] = self.complete(&self.points[index])?;
+        }
+        Ok(())
     }
 
     /// Gives a branch that was read from a file its model back, so that it can compute further orbits: by the method that followed it,
@@ -247,6 +292,29 @@ impl Branch {
         Ok(asked.check()?.0)
     }
 
+    /// The method that followed it, in words, whether it was asked for or [chosen](crate::Chosen): `harmonic balance`, `shooting` or
+    /// `contact equation`. `None` of a branch from a file that does not say so.
+    ///
+    /// ```
+    /// use hertzian::{FrequencyResponse, Shooting};
+    ///
+    /// hertzian::oscillator! {
+    ///     Duffing(x) {
+    ///         param drive;
+    ///         ddot(x) + 0.1*dot(x) + x + x^3 = drive*cos(omega*t);
+    ///     }
+    /// }
+    ///
+    /// let request = FrequencyResponse::of(&Duffing { drive: 0.2 }).from(0.5).to(0.6);
+    /// assert_eq!(request.run()?.method(), Some("harmonic balance"));
+    /// assert_eq!(request.by(Shooting::new()).run()?.method(), Some("shooting"));
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    pub fn method(&self) -> Option<&'static str> {
+        let known = self.following().ok().map(Following::method);
+        known.or_else(|| written_method(&self.further))
+    }
+
     /// What followed it, if it is one of the balance.
     pub(super) fn by_balance(&self) -> Option<&BranchContext> {
         match self.following() {
@@ -261,4 +329,23 @@ impl Branch {
         let following = request.and_then(|request| request.downcast_ref::<Following>());
         following.ok_or_else(|| RequestError::Detached.into())
     }
+}
+
+/// The method of a branch that was read from a file, as it was written.
+#[cfg(feature = "serde")]
+fn written_method(further: &Further) -> Option<&'static str> {
+    let by = further.written["by"].as_object()?;
+    let known = [
+        ("harmonic-balance", following::BALANCE),
+        ("shooting", following::SHOOTING),
+        ("contact-equation", following::EQUATION),
+    ];
+    let mut known = known.into_iter();
+    known.find_map(|(key, method)| by.contains_key(key).then_some(method))
+}
+
+/// Without files nothing is written.
+#[cfg(not(feature = "serde"))]
+fn written_method(_: &Further) -> Option<&'static str> {
+    None
 }

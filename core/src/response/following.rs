@@ -13,6 +13,11 @@ use crate::contact_equation::{self, ContactEquation};
 use crate::error::Error;
 use crate::shooting::{self, Shooting};
 
+/// Names of methods.
+pub(super) const BALANCE: &str = "harmonic balance";
+pub(super) const SHOOTING: &str = "shooting";
+pub(super) const EQUATION: &str = "contact equation";
+
 /// What a branch was asked for by.
 #[derive(Clone)]
 pub(super) enum Following {
@@ -100,6 +105,20 @@ impl Following {
             | Self::Shooting { request, .. }
             | Self::ContactEquation { request, .. } => request,
         }
+    }
+
+    /// The name of the method.
+    pub(super) fn method(&self) -> &'static str {
+        match self {
+            Self::Balance { .. } => BALANCE,
+            Self::Shooting { .. } => SHOOTING,
+            Self::ContactEquation { .. } => EQUATION,
+        }
+    }
+
+    /// Whether single orbits are completed.
+    pub(super) fn completes(&self) -> bool {
+        matches!(self, Self::ContactEquation { .. })
     }
 
     /// By which motions in time are computed.

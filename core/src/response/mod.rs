@@ -5,6 +5,7 @@ mod branch;
 mod by_balance;
 mod by_contact_equation;
 mod by_shooting;
+mod chosen;
 mod following;
 mod multipliers;
 mod reading;
@@ -14,6 +15,7 @@ mod resume;
 #[doc(hidden)]
 pub mod stages;
 
+pub use chosen::{Choice, Chosen};
 pub use resume::Resume;
 
 use std::ops::ControlFlow;
@@ -73,9 +75,11 @@ mod sealed {
     }
 }
 
-/// A method of computing periodic orbits: [`HarmonicBalance`], [`Shooting`] or [`ContactEquation`].
+/// A method of computing periodic orbits: [`HarmonicBalance`], [`Shooting`], [`ContactEquation`], or the one of these that is
+/// [`Chosen`].
 pub trait OrbitMethod: sealed::Follow + Clone + Send + Sync + 'static {}
 
+impl OrbitMethod for Chosen {}
 impl OrbitMethod for HarmonicBalance {}
 impl OrbitMethod for Shooting {}
 impl OrbitMethod for ContactEquation {}
@@ -83,7 +87,7 @@ impl OrbitMethod for ContactEquation {}
 /// What to follow, set up step by step, then [run](FrequencyResponse::run).
 ///
 /// Only the two ends of the range have to be given. By default the excitation frequency is varied, the orbit has the
-/// period of the excitation, orbits are found by [`HarmonicBalance`], and everything else follows from the tolerance. Setters may be
+/// period of the excitation, the method that fits the system is [`Chosen`], and everything else follows from the tolerance. Setters may be
 /// called in any order; [`by`](Self::by) replaces the options of a method.
 ///
 /// ```
@@ -103,7 +107,7 @@ impl OrbitMethod for ContactEquation {}
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct FrequencyResponse<M = HarmonicBalance> {
+pub struct FrequencyResponse<M = Chosen> {
     pub(crate) request: Request,
     pub(crate) method: M,
     /// Name of what the accuracy is of.
@@ -115,11 +119,36 @@ impl FrequencyResponse {
     pub fn of(system: &dyn System) -> Self {
         Self {
             request: Request::of(system),
-            method: HarmonicBalance::default(),
+            method: Chosen::new(),
             accuracy: None,
         }
     }
 
+    hertzian_contract::setters! { self:
+        /// By the balance, and as [`HarmonicBalance::harmonics`].
+        harmonics(harmonics: usize) { self.method = self.method.balanced(|balance| balance.harmonics(harmonics)) }
+
+        /// By the balance, and as [`HarmonicBalance::samples`].
+        samples(samples: usize) { self.method = self.method.balanced(|balance| balance.samples(samples)) }
+
+        /// By the balance, and as [`HarmonicBalance::aft`].
+        aft(aft: Aft) { self.method = self.method.balanced(|balance| balance.aft(aft)) }
+
+        /// By the balance, and as [`HarmonicBalance::multipliers`].
+        multipliers(method: Method) { self.method = self.method.balanced(|balance| balance.multipliers(method)) }
+
+        /// By the balance, and as [`HarmonicBalance::doublings`].
+        doublings(wanted: bool) { self.method = self.method.balanced(|balance| balance.doublings(wanted)) }
+
+        /// By the balance, and as [`HarmonicBalance::bifurcations`].
+        bifurcations(wanted: bool) { self.method = self.method.balanced(|balance| balance.bifurcations(wanted)) }
+
+        /// By the balance, and as [`HarmonicBalance::symmetric`].
+        symmetric(wanted: bool) { self.method = self.method.balanced(|balance| balance.symmetric(wanted)) }
+    }
+}
+
+impl FrequencyResponse<HarmonicBalance> {
     hertzian_contract::setters! { self:
         /// As [`HarmonicBalance::harmonics`].
         harmonics(harmonics: usize) { self.method = self.method.harmonics(harmonics) }

@@ -123,6 +123,10 @@ impl Branch {
     }
 
     fn read_signal(&self, source: Source, point: &Point) -> Result<Reading, Error> {
+        // The series of an orbit that is known by its states was cut off, and its motion was not.
+        if let (false, Ok(following)) = (point.orbit.states.is_empty(), self.following()) {
+            return by_shooting::reading(following.request(), following.shooting(), point, source);
+        }
         // A coordinate is its series: that takes no model.
         if let Source::Coordinate(index) = source
             && let Some(reading) = of_coordinate(point, index)
@@ -193,7 +197,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     }
 
     fn read_signal(&self, source: Source, point: &Point) -> Result<Reading, Error> {
-        if point.orbit.has_series() {
+        if point.orbit.states.is_empty() {
             return of_series(self.request.system.as_ref(), point, source);
         }
         by_shooting::reading(&self.request, self.shooting()?, point, source)

@@ -257,7 +257,7 @@ proptest! {
             (Just(of_balance).prop_shuffle(), Just(common::<Shooting>()).prop_shuffle())
         }
     ) {
-        let first = || FrequencyResponse::of(&MODEL);
+        let first = || FrequencyResponse::of(&MODEL).by(HarmonicBalance::new());
         let mut sorted = common::<HarmonicBalance>();
         sorted.extend([
             (|request| request.harmonics(7)) as Setter<HarmonicBalance>,

@@ -5,6 +5,7 @@ mod at_rest;
 #[cfg(feature = "serde")]
 mod both_ways;
 mod cancelled;
+mod chosen;
 mod curves;
 mod either;
 #[cfg(feature = "serde")]

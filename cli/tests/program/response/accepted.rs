@@ -42,7 +42,10 @@ fn every_option_is_understood() {
         (Some(7), Some(99), 2)
     );
     assert_eq!(options.at, [1.5, -0.2]);
-    assert_eq!(options.multipliers, Multipliers::KoopmanHillSubharmonic);
+    assert_eq!(
+        options.multipliers,
+        Some(Multipliers::KoopmanHillSubharmonic)
+    );
     assert_eq!(options.varied(), "drive");
 }
 

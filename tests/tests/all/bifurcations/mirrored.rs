@@ -1,7 +1,7 @@
 //! Odd symmetry of two contacts that are images of each other: the springs of `symmetry`, and a mass between two stops, written with
 //! one law of one gap and with two contacts.
 
-use hertzian::{Branch, EventKind, FrequencyResponse, Shooting, System};
+use hertzian::{Branch, EventKind, FrequencyResponse, HarmonicBalance, Shooting, System};
 
 use crate::bifurcations::symmetry::{HARDENING, Hardening};
 
@@ -209,10 +209,11 @@ fn the_symmetry_of_two_contacts_breaks_where_it_should() {
     let (zeta, drive) = (0.01, 0.1);
     let pair = HardeningPair { zeta, drive };
     let request = FrequencyResponse::of(&pair).from(0.45).to(0.3);
-    let branch = request.run().unwrap();
+    let branch = request.clone().by(HarmonicBalance::new()).run().unwrap();
     let found: Vec<_> = branch.events(EventKind::SymmetryBreaking).collect();
     let one = Hardening { zeta, drive };
     let one = FrequencyResponse::of(&one)
+        .by(HarmonicBalance::new())
         .from(0.45)
         .to(0.3)
         .run()
@@ -225,16 +226,13 @@ fn the_symmetry_of_two_contacts_breaks_where_it_should() {
         let apart = (event.point.value - same.point.value).abs();
         assert!(apart < 1e-11, "{event} {same}");
     }
-    let shooting = FrequencyResponse::of(&pair)
-        .by(Shooting::new())
-        .from(0.45)
-        .to(0.3)
-        .run()
-        .unwrap();
-    let breaks: Vec<_> = shooting.events(EventKind::SymmetryBreaking).collect();
-    assert_eq!(breaks.len(), 2);
-    for (event, exact) in breaks.iter().zip(HARDENING) {
-        let error = (event.point.value - exact).abs();
-        assert!(error < 1e-9 && error <= event.error, "{event} {error:.1e}");
+    let shooting = request.clone().by(Shooting::new()).run().unwrap();
+    for branch in [shooting, request.run().unwrap()] {
+        let breaks: Vec<_> = branch.events(EventKind::SymmetryBreaking).collect();
+        assert_eq!(breaks.len(), 2);
+        for (event, exact) in breaks.iter().zip(HARDENING) {
+            let error = (event.point.value - exact).abs();
+            assert!(error < 1e-9 && error <= event.error, "{event} {error:.1e}");
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use hertzian::{EventKind, FrequencyResponse, Point, Shooting};
+use hertzian::{EventKind, FrequencyResponse, HarmonicBalance, Point, Shooting};
 
 hertzian::oscillator! {
     /// Two springs on opposite sides of a shaft, both always pressed: `k (x cos + 9) cos` twice is `k (1 + cos 2 omega t) x`.
@@ -107,7 +107,8 @@ fn orbits_of_three_copies_are_those_with_all_harmonics() {
     let request = FrequencyResponse::of(&model)
         .from(0.9)
         .to(0.5)
-        .tolerance(1e-8);
+        .tolerance(1e-8)
+        .by(HarmonicBalance::new());
     let three = request.run().unwrap();
     let all = request.clone().symmetric(false).run().unwrap();
     assert!(three.points.iter().all(|point| others(point, 3) == 0.0));
@@ -125,6 +126,7 @@ fn orbits_of_three_copies_are_those_with_all_harmonics() {
 fn another_contact_takes_the_copies_apart() {
     let model = Stops { skew: 0.2 };
     let request = FrequencyResponse::of(&model).from(0.9).to(0.8);
+    let request = request.by(HarmonicBalance::new());
     let branch = request.run().unwrap();
     assert!(branch.points.iter().all(|point| others(point, 3) > 1e-4));
 }

@@ -25,7 +25,9 @@ fn touching_a_level_and_just_beside() {
         let request = FrequencyResponse::of(&model).vary("drive").omega(1.0);
         let request = request.from(drive).to(2.0 * drive);
         let branch = first(&request);
-        let (x, v) = branch.points[0].orbit.state_at(0, 0.0).unwrap();
+        let [x, v] = branch.points[0].orbit.state()[..] else {
+            panic!("one coordinate");
+        };
         let oracle = paper(drive);
         let (state, exact) = if excess == 0.0 {
             ([x, v], [linear_motion, linear_motion.conj()])

@@ -1,7 +1,7 @@
 //! Integration in time: steps across switches, and perturbations that do not jump there.
 
-use hertzian::FrequencyResponse;
 use hertzian::stability::Method;
+use hertzian::{FrequencyResponse, HarmonicBalance};
 
 use super::models::{OneSided, answer, distance, first, linear};
 use super::oracle::{Contact, EXACT, Switches, pair, paper};
@@ -25,7 +25,8 @@ fn steps_across_switches_are_of_first_order() {
     let order = (errors[0] / errors[3]).ln() / 512_f64.ln();
     assert!((0.5..1.5).contains(&order), "{order}");
     let model = linear(1.0);
-    let request = FrequencyResponse::of(&model).vary("drive").omega(1.0);
+    let request = FrequencyResponse::of(&model).by(HarmonicBalance::new());
+    let request = request.vary("drive").omega(1.0);
     let answer = answer(&first(&request.from(1.0).to(1.01)), Method::Default).stability;
     let error = distance(&answer.multipliers, &exact);
     println!("default {error:.1e}, estimate {:.1e}", answer.error);

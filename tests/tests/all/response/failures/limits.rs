@@ -1,18 +1,19 @@
 //! The edges of the range: no damping, no load, many impacts in a period, small and large exponents.
 
 use hertzian::stability::{Method, Projection};
-use hertzian::{Error, FrequencyResponse, Point, Shooting, Stability, System, Verdict};
+use hertzian::{Error, FrequencyResponse, HarmonicBalance, Point, Shooting, Stability, System, Verdict};
 
 use super::models::{Continuous, OneSided, answer, distance, first, shown, start};
 
-/// The first orbit at a frequency, at defaults, and what is true of it.
+/// The first orbit at a frequency, by the balance at its defaults, and what is true of it.
 fn at(system: &dyn System, omega: f64) -> (Point, Stability) {
     found(system, omega).unwrap()
 }
 
 /// The same, if there is one.
 fn found(system: &dyn System, omega: f64) -> Result<(Point, Stability), Error> {
-    let request = FrequencyResponse::of(system).from(omega).to(1.001 * omega);
+    let request = FrequencyResponse::of(system).by(HarmonicBalance::new());
+    let request = request.from(omega).to(1.001 * omega);
     let point = start(&request)?.points.remove(0);
     let shooting = FrequencyResponse::of(system)
         .by(Shooting::new().tolerance(1e-11))

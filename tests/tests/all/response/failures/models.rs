@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use hertzian::stability::{Answer, Method};
-use hertzian::{Branch, Error, FrequencyResponse};
+use hertzian::{Branch, Error, FrequencyResponse, OrbitMethod};
 pub use hertzian_tests::{Continuous, OneSided, OneSidedLinear, distance};
 
 /// The linear one at the damping and load of the paper.
@@ -16,12 +16,12 @@ pub const fn linear(drive: f64) -> OneSidedLinear {
 }
 
 /// A branch of one point: the first orbit of a request, if one is found.
-pub fn start(request: &FrequencyResponse) -> Result<Branch, Error> {
+pub fn start<M: OrbitMethod>(request: &FrequencyResponse<M>) -> Result<Branch, Error> {
     request.run_with(|_| ControlFlow::Break(()))
 }
 
 /// The same of a request that has one.
-pub fn first(request: &FrequencyResponse) -> Branch {
+pub fn first<M: OrbitMethod>(request: &FrequencyResponse<M>) -> Branch {
     start(request).unwrap()
 }
 

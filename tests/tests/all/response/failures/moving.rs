@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::{Aft, Complex, FrequencyResponse, Shooting};
+use hertzian::{Aft, Complex, FrequencyResponse, HarmonicBalance, Shooting};
 
 use super::models::{distance, first};
 
@@ -22,7 +22,8 @@ hertzian::oscillator! {
 fn a_moving_contact_has_a_second_part() {
     let (zeta, omega) = (0.2, 0.9);
     let model = Lever { zeta, drive: 0.8 };
-    let request = FrequencyResponse::of(&model).from(omega).to(0.91);
+    let request = FrequencyResponse::of(&model).by(HarmonicBalance::new());
+    let request = request.from(omega).to(0.91);
     let branch = first(&request);
     let orbit = &branch.points[0].orbit;
     let mean = |f: &dyn Fn(f64) -> Complex<f64>| -> Complex<f64> {

@@ -8,6 +8,9 @@ use super::models::{
     FIGURE_5B, FIGURE_5C, Figure,
 };
 
+/// Error of the exact values.
+const KNOWN: f64 = 1e-12;
+
 /// Every fold found once, none invented: omega within the error stated, omega and peak-to-peak near the exact ones.
 fn assert_folds(figure: &Figure, request: &FrequencyResponse) {
     let branch = request.run().unwrap();
@@ -18,7 +21,7 @@ fn assert_folds(figure: &Figure, request: &FrequencyResponse) {
     assert_eq!(found.len(), figure.folds.len(), "{found:?}");
     for (fold, exact) in found.iter().zip(figure.folds) {
         let error = (fold.point.omega() - exact.omega).abs();
-        assert!(error <= fold.error, "{fold} {exact:?}");
+        assert!(error <= fold.error + KNOWN, "{fold} {exact:?}");
         assert!(error < 1e-5, "{fold} {exact:?}");
         let size = fold.point.peak_to_peak();
         assert!((size - exact.peak_to_peak).abs() < 1e-4, "{fold} {exact:?}");

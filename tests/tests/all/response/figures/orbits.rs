@@ -1,6 +1,6 @@
 //! Orbits along the curves: multipliers, power, and peak-to-peak within the tolerance.
 
-use hertzian::{Point, Verdict};
+use hertzian::{HarmonicBalance, Point, Verdict};
 
 use super::curves::{CURVE_2A, CURVE_5A, ROUNDED};
 use super::direct;
@@ -26,7 +26,9 @@ fn multipliers_agree_with_direct_integration() {
     let mut compared = 0;
     for index in 0..20 {
         let point = eligible[index * (eligible.len() - 1) / 19];
-        let (x, v) = point.orbit.state_at(0, 0.0).unwrap();
+        let [x, v] = point.orbit.state()[..] else {
+            panic!("one coordinate");
+        };
         let system = direct::PowerForm {
             alpha: 1.5,
             zeta: 0.01,
@@ -58,7 +60,8 @@ fn multipliers_agree_with_direct_integration() {
 #[test]
 fn power_balances_to_rounding() {
     let model = FIGURE_4A_LOAD_1.model();
-    for point in FIGURE_4A_LOAD_1.request(&*model).run().unwrap().points {
+    let request = FIGURE_4A_LOAD_1.request(&*model);
+    for point in request.by(HarmonicBalance::new()).run().unwrap().points {
         let (input, dissipated) = (
             point.observed.input_power.unwrap(),
             point.observed.dissipated_power.unwrap(),

@@ -1,0 +1,294 @@
+//! The method that fits a system, where none is asked for.
+//!
+//! Where a force sets in at a level of its gap, or has a corner there, its harmonics fall off as a low power of their number. The contact
+//! equation has forces as unknowns on each stretch between two crossings, on which they are smooth. A force that is continuous with its
+//! derivatives, as an odd power above one, has harmonics that fall off faster, and few of them are few unknowns. So laws alone tell which
+//! method is quicker; what was measured is in DESIGN.md.
+//!
+//! The contact equation has no equation for a system that nothing holds, may miss a first orbit, and may end where its equations fit no
+//! further orbit. There the balance is tried, which was asked for every branch before there was a choice.
+
+use std::fmt;
+
+use super::following;
+use super::sealed::Follow;
+use crate::balance::Parity;
+use crate::balance_branch::check::Asked;
+use crate::balance_branch::options::HarmonicBalance;
+use crate::branches::branch::Branch;
+use crate::branches::point::{Event, Point};
+use crate::branches::progress::See;
+use crate::branches::request::Request;
+use crate::contact_equation::ContactEquation;
+use crate::continuation::stop::Stop;
+use crate::error::Error;
+use crate::event::Side;
+use crate::law::{Law, LawFacts, On, PieceFacts, Quantity, Variation};
+use crate::laws::single::Single;
+use crate::model;
+use crate::model::layout::Layout;
+use crate::orbit::observe::Accuracy;
+use crate::system::System;
+
+/// The frequency at which laws are looked at. It is in none but through a coefficient of time in units of its own.
+const FREQUENCY: f64 = 1.0;
+/// Rates at which limits of forces are compared.
+const RATES: [f64; 2] = [0.0, 1.0];
+/// Limits that differ by this part of their size are the same.
+const ROUNDED: f64 = 1e-12;
+
+/// The method that fits the system, which a [`FrequencyResponse`](crate::FrequencyResponse) uses unless another one is
+/// [asked for](crate::FrequencyResponse::by): the [contact equation](ContactEquation) where a law opens, that is has a piece without force, or
+/// has a corner or a jump at a level, and the [harmonic balance](HarmonicBalance) where every force is smooth. Where the contact equation has no equations for the
+/// system, finds no first orbit or leads no further, the balance is tried: [`Branch::method`] says what a branch was followed by.
+///
+/// One orbit by itself is one of the balance, which the contact equation would begin with.
+///
+/// Whoever sets an option of the balance, as the number of harmonics, wants the balance. So it is the balance too where a symmetry is to be
+/// watched without [stability](crate::FrequencyResponse::stability), which the contact equation cannot.
+///
+/// ```
+/// use hertzian::{Choice, FrequencyResponse};
+///
+/// hertzian::oscillator! {
+///     Stopped(x) {
+///         law stop(gap) { gap > 0 => 10*gap, else => 0 }
+///         ddot(x) + 0.1*dot(x) + x + stop(x - 1) = 0.3*cos(omega*t);
+///     }
+/// }
+///
+/// let request = FrequencyResponse::of(&Stopped {}).from(0.8).to(1.2);
+/// assert_eq!(Choice::of(&Stopped {}).to_string(), "contact equation, since law `stop` opens");
+/// assert_eq!(request.run()?.method(), Some("contact equation"));
+/// assert_eq!(request.harmonics(20).run()?.method(), Some("harmonic balance"));
+/// # Ok::<(), hertzian::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Chosen {
+    /// The balance with its options.
+    pub(super) balance: HarmonicBalance,
+    /// One of them was set.
+    by_balance: bool,
+}
+
+/// What is chosen for a system, and why. It is shown in a few words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Choice {
+    /// Every force is smooth.
+    HarmonicBalance,
+    /// A force is not.
+    ContactEquation {
+        /// Name of the first law of which it is one.
+        law: String,
+        /// Whether the law has a piece without force. Otherwise it has a corner or a jump at a level.
+        opens: bool,
+    },
+}
+
+impl Choice {
+    /// For a system, by its laws at the values that its parameters have now.
+    pub fn of(system: &dyn System) -> Self {
+        let layout = Layout::of(system);
+        let mut coefficients = vec![0.0; layout.coefficients];
+        system.coefficients(&model::values(system), FREQUENCY, &mut coefficients);
+        let choice = layout.contacts.iter().find_map(|contact| {
+            let law = system.law(contact.law);
+            let mut arguments = vec![0.0; contact.argument_count];
+            contact.arguments(&coefficients, &mut arguments);
+            let opens = opens(law.facts());
+            let found = opens || has_corner(law, &arguments);
+            found.then(|| Self::ContactEquation {
+                law: law.facts().name.to_string(),
+                opens,
+            })
+        });
+        choice.unwrap_or(Self::HarmonicBalance)
+    }
+
+    /// The name of the method, as [`Branch::method`] has it.
+    pub fn method(&self) -> &'static str {
+        match self {
+            Self::HarmonicBalance => following::BALANCE,
+            Self::ContactEquation { .. } => following::EQUATION,
+        }
+    }
+}
+
+/// Whether a piece of a law has no force, and others have.
+fn opens(law: &LawFacts) -> bool {
+    let is_free = |piece: &PieceFacts| piece.force == Variation::Zero;
+    law.pieces.iter().any(is_free) && !law.pieces.iter().all(is_free)
+}
+
+/// Whether a force, or a derivative of it, jumps or is unbounded at a level. What is known of the law may be of all values that an exponent
+/// can have: the two pieces tell what it is at these.
+fn has_corner(law: &dyn Law, arguments: &[f64]) -> bool {
+    let facts = &law.facts().levels;
+    let mut levels = vec![0.0; facts.len()];
+    law.levels(arguments, &mut levels);
+    facts.iter().enumerate().any(|(index, level)| {
+        let may = level.force_jumps
+            || level.by_gap_jumps
+            || level.by_rate_jumps
+            || level.unbounded_by_gap;
+        may && (is_unbounded(law.facts(), index, arguments) || RATES.iter().any(|rate| {
+            let at = [levels[index], *rate];
+            let sides = [index, index + 1];
+            let [below, above] = sides.map(|piece| Single::of(law, On::Piece(piece), arguments, at));
+            differ(below.force, above.force)
+                || differ(below.by_gap, above.by_gap)
+                || differ(below.by_rate, above.by_rate)
+        }))
+    })
+}
+
+/// Whether a derivative by the gap is unbounded on a side of a level.
+fn is_unbounded(law: &LawFacts, level: usize, arguments: &[f64]) -> bool {
+    let below = law.pieces[level].terms.iter();
+    let below = below.map(|term| (term.of, term.upper));
+    let above = law.pieces[level + 1].terms.iter();
+    let above = above.map(|term| (term.of, term.lower));
+    let mut terms = below.chain(above).filter(|(of, _)| *of == Quantity::ByGap);
+    terms.any(|(_, exponent)| exponent.value(arguments) < 0.0)
+}
+
+/// Whether two limits are not one number up to rounding; what is unbounded is none.
+fn differ(below: f64, above: f64) -> bool {
+    let size = below.abs().max(above.abs());
+    !((below - above).abs() <= ROUNDED * size)
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let method = self.method();
+        match self {
+            Self::HarmonicBalance => write!(f, "{method}, since every force is smooth"),
+            Self::ContactEquation { law, opens: true } => {
+                write!(f, "{method}, since law `{law}` opens")
+            }
+            Self::ContactEquation { law, opens: false } => {
+                write!(f, "{method}, since law `{law}` has a corner")
+            }
+        }
+    }
+}
+
+impl Chosen {
+    /// With everything by default.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// With other options of the balance, which is wanted then.
+    pub(super) fn balanced(self, set: impl FnOnce(HarmonicBalance) -> HarmonicBalance) -> Self {
+        Self {
+            balance: set(self.balance),
+            by_balance: true,
+        }
+    }
+
+    /// The contact equation, where that is chosen.
+    fn equation(&self, request: &Request) -> Option<ContactEquation> {
+        let chosen = !self.by_balance && Choice::of(request.system.as_ref()) != Choice::HarmonicBalance;
+        let accuracy = self.balance.accuracy;
+        chosen.then(|| ContactEquation::new().accurate_in(accuracy))
+    }
+
+    /// Whether orbits have a symmetry that they may lose on a branch: the contact equation sees that by multipliers alone.
+    fn may_break(&self, request: &Request) -> bool {
+        let asked = Asked::of(request, &self.balance);
+        asked.check().is_ok_and(|(context, _)| {
+            let resolution = context.resolution;
+            resolution.parity == Parity::Odd || resolution.stride > 1
+        })
+    }
+
+    /// What the contact equation finds where it is chosen, or else the balance.
+    fn either<T>(
+        &self,
+        request: &Request,
+        mut find: impl FnMut(&dyn Follow) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        if let Some(equation) = self.equation(request) {
+            let found = find(&equation);
+            if found.is_ok() || request.cancel.is_cancelled() {
+                return found;
+            }
+        }
+        find(&self.balance)
+    }
+}
+
+impl Follow for Chosen {
+    fn for_diagram(self) -> Self {
+        Self {
+            balance: self.balance.for_diagram(),
+            ..self
+        }
+    }
+
+    fn accurate_in(self, accuracy: Accuracy) -> Self {
+        Self {
+            balance: self.balance.accurate_in(accuracy),
+            ..self
+        }
+    }
+
+    fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
+        // The contact equation begins with an orbit of the balance.
+        self.balance.orbit(request, value)
+    }
+
+    fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
+        let unseen = || !request.stability && self.may_break(request);
+        let Some(equation) = self.equation(request).filter(|_| !unseen()) else {
+            return self.balance.run(request, visit);
+        };
+        let found = equation.run(request, &mut *visit);
+        // What is kept in a file is there already.
+        let enough = |branch: &Branch| !is_lost(branch) || request.keep.is_some();
+        if found.as_ref().is_ok_and(enough) || request.cancel.is_cancelled() {
+            return found;
+        }
+        let other = self.balance.run(request, visit);
+        match (found, other) {
+            (Ok(found), Ok(other)) if is_lost(&other) => Ok(found.after(&other)),
+            (Ok(found), Ok(other)) => Ok(other.after(&found)),
+            (Ok(found), Err(_)) => Ok(found),
+            (Err(_), other) => other,
+        }
+    }
+
+    fn switch(
+        &self,
+        request: &Request,
+        event: &Event,
+        side: Side,
+        visit: See<'_>,
+    ) -> Result<Branch, Error> {
+        self.either(request, |method| method.switch(request, event, side, &mut *visit))
+    }
+
+    fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
+        self.either(request, |method| method.through(request, value, &mut *visit))
+    }
+}
+
+/// Whether a branch ended because nothing further was found.
+fn is_lost(branch: &Branch) -> bool {
+    matches!(
+        branch.stopped,
+        Stop::StepTooShort { .. } | Stop::Motion { .. }
+    )
+}
+
+impl Branch {
+    /// The same with what another one cost that was followed in vain.
+    fn after(mut self, vain: &Self) -> Self {
+        self.statistics += vain.statistics;
+        self.work += vain.work;
+        self.elapsed += vain.elapsed;
+        self
+    }
+}
