@@ -3,8 +3,7 @@
 //! The contact opens where the ball moves away, so that the resonance leans to lower frequencies. To make it your own, change the
 //! equation, its parameters and the range of frequencies. Figure 5b of Wang, Zhang, Ying and Pang (2021), Appl. Sci. 11, 7722.
 
-use hertzian::chart::{Chart, event_markers};
-use hertzian::{Branch, Error, EventKind, FrequencyResponse, Point};
+use hertzian::{Branch, Error, EventKind, FrequencyResponse};
 
 hertzian::oscillator! {
     /// Ball on a plane
@@ -35,12 +34,10 @@ pub fn main() -> Result<(), Error> {
     let branch = FrequencyResponse::of(&model).from(0.6).to(1.6).run()?;
     describe(&branch);
 
-    // Contact is lost beyond orbits that graze: whose smallest penetration is zero.
-    let grazing = EventKind::Grazing { turns: false };
-    let lost = contact_is_lost(&branch.points).into_iter();
-    let marks = event_markers(lost.map(|place| (grazing, place)));
-    let chart = marks.fold(branch.chart(), Chart::marks);
-    let chart = chart.title("Ball on a plane, force as gap^1.5: ζ = 0.032, W = 1, A = 0.1");
+    // Contact is lost beyond orbits that graze, whose smallest penetration is zero: they are marked.
+    let chart = branch
+        .chart()
+        .title("Ball on a plane, force as gap^1.5: ζ = 0.032, W = 1, A = 0.1");
     chart.write("response.svg")?;
     println!("written    response.svg");
     Ok(())
@@ -74,21 +71,4 @@ fn describe(branch: &Branch) {
     }
     let milliseconds = 1e3 * branch.elapsed.as_secs_f64();
     println!("time       {milliseconds:.0} ms; {}", branch.statistics);
-}
-
-/// Where the smallest displacement of the orbits passes zero: between two points of the branch, on the straight line between them.
-fn contact_is_lost(points: &[Point]) -> Vec<[f64; 2]> {
-    let mut places = Vec::new();
-    for pair in points.windows(2) {
-        let [a, b] = [pair[0].motion(), pair[1].motion()];
-        if (a.minimum > 0.0) != (b.minimum > 0.0) {
-            let part = a.minimum / (a.minimum - b.minimum);
-            let between = |a: f64, b: f64| a + part * (b - a);
-            places.push([
-                between(pair[0].value, pair[1].value),
-                between(a.peak_to_peak(), b.peak_to_peak()),
-            ]);
-        }
-    }
-    places
 }

@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use cpu_time::ThreadTime;
 use hertzian::{
-    Branch, ContactEquation, Error, FrequencyResponse, HarmonicBalance, Shooting, System, oscillator,
+    Branch, ContactEquation, Error, FrequencyResponse, HarmonicBalance, Shooting, System,
+    oscillator,
 };
 
 oscillator! {

@@ -6,8 +6,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use hertzian::bifurcation::{Bifurcations, Diagram, Reason, Settling};
 use hertzian::error::{ErrorKind, chain};
 use hertzian::{
-    Branch, Cancel, Chosen, ContactEquation, Error, FrequencyResponse, HarmonicBalance, OrbitMethod,
-    Shooting, Valued,
+    Branch, Cancel, Chosen, ContactEquation, Error, FrequencyResponse, HarmonicBalance,
+    OrbitMethod, Shooting, Valued,
 };
 
 use crate::plan::{Method, What};

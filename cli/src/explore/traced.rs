@@ -7,10 +7,7 @@ use std::time::{Duration, Instant};
 
 use hertzian::bifurcation::Diagram;
 use hertzian::error::ErrorKind;
-use hertzian::{
-    Branch, Cancel, Error, FrequencyResponse, Point, Stop, System,
-    Verdict,
-};
+use hertzian::{Branch, Cancel, Error, FrequencyResponse, Point, Stop, System, Verdict};
 
 use super::asked::{Asked, Effort, Method};
 use super::declared::Texts;

@@ -176,7 +176,11 @@ impl<'t> Curves<'t> {
     }
 
     /// Traces a curve until it ends or is interrupted.
-    fn followed(&mut self, case: &Case, request: &FrequencyResponse<HarmonicBalance>) -> Result<Branch, String> {
+    fn followed(
+        &mut self,
+        case: &Case,
+        request: &FrequencyResponse<HarmonicBalance>,
+    ) -> Result<Branch, String> {
         let followed = request.clone().cancel(self.task.cancel).run();
         let branch = followed.map_err(|error| chain(&error).to_string())?;
         self.add(&case.label, &branch);

@@ -6,9 +6,7 @@ use std::ops::ControlFlow;
 use hertzian::attractors::basin::Fate;
 use hertzian::bifurcation::{Bifurcations, Diagram, Reason, Searched, Settling};
 use hertzian::export::Decimal;
-use hertzian::{
-    ContactEquation, Error, FrequencyResponse, OrbitMethod, Progress, Shooting, Stop,
-};
+use hertzian::{ContactEquation, Error, FrequencyResponse, OrbitMethod, Progress, Shooting, Stop};
 
 use super::bifurcations::describe;
 use super::options::{By, Options};

@@ -404,7 +404,9 @@ impl Options {
     fn of_the_balance(&self, given: &Given<'_>) -> Option<String> {
         let options = ["harmonics", "samples", "aft", "multipliers"];
         let mut options = options.into_iter().filter(|option| given.has(option));
-        let option = options.next().filter(|_| self.method() != Some(By::Balance))?;
+        let option = options
+            .next()
+            .filter(|_| self.method() != Some(By::Balance))?;
         Some(format!(
             "--{option} belongs to --by balance and would do nothing here"
         ))

@@ -375,8 +375,7 @@ pub fn in_range(options: &Options, model: &dyn System) -> FrequencyResponse {
 
 /// The options in the library's terms.
 pub(crate) fn request(options: &Options, model: &dyn System) -> FrequencyResponse {
-    let mut request = in_range(options, model)
-        .tolerance(options.tolerance);
+    let mut request = in_range(options, model).tolerance(options.tolerance);
     if let Some(points) = options.max_points {
         request = request.max_points(points);
     }

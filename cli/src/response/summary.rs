@@ -167,7 +167,12 @@ fn equation(text: &mut String, options: &Options) -> fmt::Result {
 fn range(text: &mut String, branch: &Branch) -> fmt::Result {
     let ends = branch.points.first().zip(branch.points.last());
     if let Some((first, last)) = ends {
-        let all = || branch.points.iter().map(|point| point.orbit.harmonics());
+        // An orbit that is known by its states has harmonics only where a file was asked for.
+        let series = branch
+            .points
+            .iter()
+            .filter(|point| point.orbit.states().next().is_none());
+        let all = || series.clone().map(|point| point.orbit.harmonics());
         let (least, most) = (all().min().unwrap_or(0), all().max().unwrap_or(0));
         let harmonics = if most == 0 {
             String::new()
@@ -288,13 +293,14 @@ fn stability(text: &mut String, branch: &Branch) -> fmt::Result {
     Ok(())
 }
 
-/// The event between two points of a branch, if there is one alone.
+/// The event between two points of a branch, if there is one alone but where a gap touches a level, which changes no verdict by itself.
 fn between<'b>(branch: &'b Branch, before: &Point, behind: &Point) -> Option<&'b Event> {
     let place = |point: &Point| branch.points.iter().position(|p| std::ptr::eq(p, point));
     let (first, last) = (place(before)?, place(behind)?);
     let mut events = branch.events.iter();
     let mut found = events
         .by_ref()
+        .filter(|event| event.kind != EventKind::Grazing { turns: false })
         .filter(|event| first < event.after && event.after <= last);
     let event = found.next()?;
     found.next().is_none().then_some(event)

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::by_shooting::{self, Second};
-use super::following::{self, Following, Left, by_any};
+use super::following::{Following, Left, by_any};
 use crate::balance::symmetry::is_broken;
 use crate::balance_branch::check::Asked;
 use crate::balance_branch::context::BranchContext;
@@ -334,6 +334,8 @@ impl Branch {
 /// The method of a branch that was read from a file, as it was written.
 #[cfg(feature = "serde")]
 fn written_method(further: &Further) -> Option<&'static str> {
+    use super::following;
+
     let by = further.written["by"].as_object()?;
     let known = [
         ("harmonic-balance", following::BALANCE),

@@ -45,7 +45,8 @@ const ROUNDED: f64 = 1e-12;
 /// One orbit by itself is one of the balance, which the contact equation would begin with.
 ///
 /// Whoever sets an option of the balance, as the number of harmonics, wants the balance. So it is the balance too where a symmetry is to be
-/// watched without [stability](crate::FrequencyResponse::stability), which the contact equation cannot.
+/// watched without [stability](crate::FrequencyResponse::stability), which the contact equation cannot, and where [accuracy is asked of an
+/// output](crate::FrequencyResponse::accuracy_of).
 ///
 /// ```
 /// use hertzian::{Choice, FrequencyResponse};
@@ -132,14 +133,16 @@ fn has_corner(law: &dyn Law, arguments: &[f64]) -> bool {
             || level.by_gap_jumps
             || level.by_rate_jumps
             || level.unbounded_by_gap;
-        may && (is_unbounded(law.facts(), index, arguments) || RATES.iter().any(|rate| {
-            let at = [levels[index], *rate];
-            let sides = [index, index + 1];
-            let [below, above] = sides.map(|piece| Single::of(law, On::Piece(piece), arguments, at));
-            differ(below.force, above.force)
-                || differ(below.by_gap, above.by_gap)
-                || differ(below.by_rate, above.by_rate)
-        }))
+        may && (is_unbounded(law.facts(), index, arguments)
+            || RATES.iter().any(|rate| {
+                let at = [levels[index], *rate];
+                let sides = [index, index + 1];
+                let [below, above] =
+                    sides.map(|piece| Single::of(law, On::Piece(piece), arguments, at));
+                differ(below.force, above.force)
+                    || differ(below.by_gap, above.by_gap)
+                    || differ(below.by_rate, above.by_rate)
+            }))
     })
 }
 
@@ -190,8 +193,12 @@ impl Chosen {
 
     /// The contact equation, where that is chosen.
     fn equation(&self, request: &Request) -> Option<ContactEquation> {
-        let chosen = !self.by_balance && Choice::of(request.system.as_ref()) != Choice::HarmonicBalance;
         let accuracy = self.balance.accuracy;
+        // More nodes do not resolve an output that vanishes but for rounding, and as many as there may be are asked for.
+        let of_output = matches!(accuracy, Accuracy::Output(_));
+        let chosen = !self.by_balance
+            && !of_output
+            && Choice::of(request.system.as_ref()) != Choice::HarmonicBalance;
         chosen.then(|| ContactEquation::new().accurate_in(accuracy))
     }
 
@@ -267,11 +274,15 @@ impl Follow for Chosen {
         side: Side,
         visit: See<'_>,
     ) -> Result<Branch, Error> {
-        self.either(request, |method| method.switch(request, event, side, &mut *visit))
+        self.either(request, |method| {
+            method.switch(request, event, side, &mut *visit)
+        })
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
-        self.either(request, |method| method.through(request, value, &mut *visit))
+        self.either(request, |method| {
+            method.through(request, value, &mut *visit)
+        })
     }
 }
 

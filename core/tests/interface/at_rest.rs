@@ -1,6 +1,6 @@
 //! The error that is stated of an output that does not move, by all methods.
 
-use hertzian::{ContactEquation, FrequencyResponse, OrbitMethod, Point, Shooting};
+use hertzian::{ContactEquation, FrequencyResponse, HarmonicBalance, OrbitMethod, Point, Shooting};
 
 hertzian::oscillator! {
     /// A stop that is not reached, a pull that is constant, and two masses that move alike: the weight on one of them is carried.
@@ -82,14 +82,16 @@ fn by_the_balance() {
 /// Orbits between those of a branch, and those of the branch, take no harmonics for noise.
 #[test]
 fn of_a_branch_by_the_balance() {
-    let most = |request: &FrequencyResponse| {
+    let most = |request: &FrequencyResponse<HarmonicBalance>| {
         let branch = request.run().expect("a branch");
         let between = branch.at(0.937).expect("orbits");
         let points = branch.points.iter().chain(&between);
         points.map(|point| point.orbit.harmonics()).max()
     };
-    let alike = FrequencyResponse::of(&ALIKE).from(0.9).to(1.0);
-    let straight = FrequencyResponse::of(&Straight {}).from(0.9).to(0.95);
+    let alike = FrequencyResponse::of(&ALIKE).by(HarmonicBalance::new());
+    let alike = alike.from(0.9).to(1.0);
+    let straight = FrequencyResponse::of(&Straight {}).by(HarmonicBalance::new());
+    let straight = straight.from(0.9).to(0.95);
     for (request, names) in [
         (
             alike.tolerance(1e-4),

@@ -27,10 +27,10 @@ hertzian::oscillator! {
 }
 
 hertzian::oscillator! {
-    /// Two stops at equal distances: the odd symmetry breaks.
+    /// A spring of two contacts, figure 2a of Wang et al. (2021): the odd symmetry breaks below the resonance.
     Stops(x) {
-        law stop(gap) { gap > 1 => 20*(gap - 1), gap < -1 => 20*(gap + 1), else => 0 }
-        ddot(x) + 0.05*dot(x) + stop(x) = 0.5*cos(omega*t);
+        law stop(gap) { gap > 0 => gap^1.5, else => 0 }
+        ddot(x) + 0.02*dot(x) + stop(x) - stop(-x) = 0.1*cos(omega*t);
     }
 }
 
@@ -87,7 +87,10 @@ fn a_contact_that_opens_has_folds_to_nine_digits() {
     for (orbit, other) in orbits.iter().zip(&others) {
         let [one, same] = [orbit, other].map(|point| &point.observed.contacts[0]);
         assert!((one.peak_force / same.peak_force - 1.0).abs() < 1e-4);
-        assert_eq!((one.count, orbit.stability.verdict), (same.count, other.stability.verdict));
+        assert_eq!(
+            (one.count, orbit.stability.verdict),
+            (same.count, other.stability.verdict)
+        );
         assert!(orbit.error < Some(1e-9) && orbit.orbit.harmonics() > 0);
     }
 }
@@ -106,20 +109,28 @@ fn an_option_of_the_balance_asks_for_it() {
         assert_eq!(branch.method(), Some("harmonic balance"));
     }
     let asked = request.harmonics(10).by(ContactEquation::new());
-    assert_eq!(asked.run().expect("a branch").method(), Some("contact equation"));
+    assert_eq!(
+        asked.run().expect("a branch").method(),
+        Some("contact equation")
+    );
 }
 
 #[test]
 fn what_the_contact_equation_refuses_goes_to_the_balance() {
     let branch = followed(&Free {});
     assert_eq!(branch.method(), Some("harmonic balance"));
-    assert!(branch.points.iter().all(|point| point.stability.verdict == Verdict::Stable));
+    assert!(
+        branch
+            .points
+            .iter()
+            .all(|point| point.stability.verdict == Verdict::Stable)
+    );
 }
 
 /// Without multipliers the contact equation does not see that a symmetry breaks, and the balance does.
 #[test]
 fn no_broken_symmetry_is_lost() {
-    let request = FrequencyResponse::of(&Stops {}).from(2.5).to(0.8);
+    let request = FrequencyResponse::of(&Stops {}).from(0.45).to(0.3);
     let with = request.clone().run().expect("a branch");
     let without = request.stability(false).run().expect("a branch");
     let found = [&with, &without].map(|branch| branch.events(EventKind::SymmetryBreaking).count());
@@ -133,7 +144,7 @@ fn a_branch_is_resumed_by_what_followed_it() {
     let request = FrequencyResponse::of(&OneSided {}).from(0.6).to(1.4);
     let whole = request.clone().run().expect("a branch");
     let part = request.max_points(40).run().expect("a branch");
-    let resumed = part.resume().run().expect("the rest");
+    let resumed = part.resume().max_points(20_000).run().expect("the rest");
     assert_eq!(resumed.method(), Some("contact equation"));
-    assert_eq!(resumed.points, whole.points);
+    assert!(resumed.points == whole.points);
 }

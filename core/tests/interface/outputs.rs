@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use hertzian::observe::{Reading, Wanted};
 
-use hertzian::{Branch, FrequencyResponse, Point, RequestError, Shooting};
+use hertzian::{Branch, FrequencyResponse, HarmonicBalance, Point, RequestError, Shooting};
 
 hertzian::oscillator! {
     /// Linear, seen from a floor that moves.
@@ -69,7 +69,8 @@ fn at(system: &dyn hertzian::System, omega: f64) -> (Branch, Point) {
 }
 
 fn within(system: &dyn hertzian::System, omega: f64, tolerance: f64) -> (Branch, Point) {
-    let request = FrequencyResponse::of(system).from(omega).to(1.001 * omega);
+    let request = FrequencyResponse::of(system).by(HarmonicBalance::new());
+    let request = request.from(omega).to(1.001 * omega);
     let branch = request.tolerance(tolerance).run().expect("a branch");
     let point = branch.points[0].clone();
     (branch, point)

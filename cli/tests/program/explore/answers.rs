@@ -144,10 +144,10 @@ fn a_fault_of_a_value_names_its_field() {
 }
 
 #[test]
-fn contacts_that_open_are_computed_by_the_contact_equation() {
+fn contacts_that_open_or_have_a_corner_are_computed_by_the_contact_equation() {
     for (name, range, method) in [
         ("one-sided", [0.6, 1.6], "contact-equation"),
-        ("tip", [0.994, 1.006], "balance"),
+        ("tip", [0.994, 1.006], "contact-equation"),
         ("continuous", [0.6, 1.6], "balance"),
     ] {
         let answer = last(&full(of(name, range[0], range[1])));

@@ -2,7 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use hertzian::{FrequencyResponse, ModelError, RequestError, Stop, Verdict, oscillator};
+use hertzian::{
+    FrequencyResponse, HarmonicBalance, ModelError, RequestError, Stop, Verdict, oscillator,
+};
 
 use crate::response::{CONTACT, Fractional, OneSided, Pair};
 
@@ -317,8 +319,8 @@ const NEIGHBOURS: Neighbours = Neighbours {};
 /// Multipliers are asked of an orbit of another system.
 #[test]
 fn multipliers_of_an_orbit_of_another_system_are_refused() {
-    let branch = FrequencyResponse::of(&CONTACT).from(1.5).to(1.6).run();
-    let branch = branch.unwrap();
+    let request = FrequencyResponse::of(&CONTACT).by(HarmonicBalance::new());
+    let branch = request.from(1.5).to(1.6).run().unwrap();
     let other = FrequencyResponse::of(&NEIGHBOURS).orbit(1.5).unwrap();
     let error = branch
         .multipliers(&other, hertzian::Method::Default)

@@ -3,7 +3,7 @@
 use hertzian::bifurcation::{Bifurcations, Diagram, Reason};
 use hertzian::shooting::BifurcationCurve;
 use hertzian::time::FlowError;
-use hertzian::{EventKind, FrequencyResponse, NewtonError, Shooting, Stop};
+use hertzian::{EventKind, FrequencyResponse, HarmonicBalance, NewtonError, Shooting, Stop};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json, to_value};
@@ -20,6 +20,7 @@ hertzian::oscillator! {
 fn a_branch_by_harmonic_balance() {
     let model = OneSided { drive: 0.1 };
     let branch = FrequencyResponse::of(&model)
+        .by(HarmonicBalance::new())
         .from(0.6)
         .to(1.2)
         .run()

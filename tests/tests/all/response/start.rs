@@ -1,7 +1,7 @@
 //! First orbits, and what is said where there is none.
 
 use hertzian::error::ErrorKind;
-use hertzian::{FrequencyResponse, NewtonError, OrbitError, System, Verdict};
+use hertzian::{FrequencyResponse, HarmonicBalance, NewtonError, OrbitError, System, Verdict};
 use hertzian_tests::TwoMasses;
 
 use crate::response::{CONTACT, Continuous, Duffing, Linear, OneSided, Pair};
@@ -17,6 +17,7 @@ fn without_load_a_start_is_found() {
             drive: 0.1,
         };
         let branch = FrequencyResponse::of(&model)
+            .by(HarmonicBalance::new())
             .from(omega)
             .to(1.01 * omega)
             .run()
@@ -158,7 +159,8 @@ hertzian::oscillator! {
 #[test]
 fn a_start_beside_a_resonance_is_cheap() {
     let model = CubicWithStop { drive: 0.1 };
-    let request = FrequencyResponse::of(&model).to(1.6);
+    let request = FrequencyResponse::of(&model).by(HarmonicBalance::new());
+    let request = request.to(1.6);
     let whole = request.clone().from(0.3).run().unwrap();
     for omega in [0.9, 1.0, 1.05, 1.1, 1.3] {
         let only = request.clone().from(omega);

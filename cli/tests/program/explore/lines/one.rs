@@ -27,7 +27,8 @@ fn main() -> Result<(), hertzian::Error> {
         .vary("drive")
         .omega(0.9)
         .from(0.01)
-        .to(0.3);
+        .to(0.3)
+        .by(hertzian::HarmonicBalance::new());
     let branch = request.run()?;
     for event in &branch.events {
         println!("{}", branch.describe(event));

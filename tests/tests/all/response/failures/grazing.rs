@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use hertzian::stability::{Method, Sorting};
-use hertzian::{Aft, Complex, FrequencyResponse, Shooting, Verdict};
+use hertzian::{Aft, Complex, FrequencyResponse, HarmonicBalance, Shooting, Verdict};
 
 use super::models::{answer, distance, first, linear};
 use super::oracle::{Switches, paper};
@@ -22,12 +22,10 @@ fn touching_a_level_and_just_beside() {
     for excess in [0.0, 1e-6, 1e-4, 1e-2] {
         let drive = touch * (1.0 + excess);
         let model = linear(drive);
-        let request = FrequencyResponse::of(&model).vary("drive").omega(1.0);
-        let request = request.from(drive).to(2.0 * drive);
+        let request = FrequencyResponse::of(&model).by(HarmonicBalance::new());
+        let request = request.vary("drive").omega(1.0).from(drive).to(2.0 * drive);
         let branch = first(&request);
-        let [x, v] = branch.points[0].orbit.state()[..] else {
-            panic!("one coordinate");
-        };
+        let (x, v) = branch.points[0].orbit.state_at(0, 0.0).unwrap();
         let oracle = paper(drive);
         let (state, exact) = if excess == 0.0 {
             ([x, v], [linear_motion, linear_motion.conj()])

@@ -48,7 +48,8 @@ fn without_saltation_an_error_stays() {
         load: oracle.load,
         drive: oracle.drive,
     };
-    let request = FrequencyResponse::of(&model).from(1.6).to(0.6);
+    let request = FrequencyResponse::of(&model).by(HarmonicBalance::new());
+    let request = request.from(1.6).to(0.6);
     let branch = request.run().unwrap();
     let orbits = branch.at(oracle.omega).unwrap();
     let largest = orbits

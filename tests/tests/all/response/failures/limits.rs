@@ -1,7 +1,9 @@
 //! The edges of the range: no damping, no load, many impacts in a period, small and large exponents.
 
 use hertzian::stability::{Method, Projection};
-use hertzian::{Error, FrequencyResponse, HarmonicBalance, Point, Shooting, Stability, System, Verdict};
+use hertzian::{
+    Error, FrequencyResponse, HarmonicBalance, Point, Shooting, Stability, System, Verdict,
+};
 
 use super::models::{Continuous, OneSided, answer, distance, first, shown, start};
 
