@@ -159,7 +159,8 @@ fn is_unbounded(law: &LawFacts, level: usize, arguments: &[f64]) -> bool {
 /// Whether two limits are not one number up to rounding; what is unbounded is none.
 fn differ(below: f64, above: f64) -> bool {
     let size = below.abs().max(above.abs());
-    !((below - above).abs() <= ROUNDED * size)
+    let apart = (below - above).abs();
+    !apart.is_finite() || apart > ROUNDED * size
 }
 
 impl fmt::Display for Choice {
