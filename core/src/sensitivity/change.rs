@@ -6,19 +6,22 @@
 //! ```text
 //! B = [ dphi/ds, dphi/dp ],     (dphi/ds)' v = X (s', p'),     X = d/dh B(s + h v; p)   at h = 0                (1)
 //! D(h) = ( B(h) - B(-h) ) / 2h,     T_jk = T_j,k-1 + ( T_j,k-1 - T_j-1,k-1 ) / (4^k - 1),   T_j0 = D(h / 2^j)  (2)
+//! X = D(h) + 8 R / 3h,   R = B(h/2) - B(0) - h D(h) / 2 - ( B(h) - 2 B(0) + B(-h) ) / 8                         (3)
 //! ```
 //!
 //! so that one direction `v`, the vector of a multiplier, serves the frequency and every parameter, and none of these is changed: a step
 //! never leaves the range of a parameter. `B` is the exact derivative of the discrete motion. It is differenced (2): second derivatives of
 //! laws at fixed times are not integrable for exponents below one, while `B` is smooth as long as the same levels are crossed in the same
-//! order. The error of a column is what the last step of (2) changed, as Ridders has it; where steps become so short that it is noise, it
-//! grows again, and the best is taken.
+//! order. As a rule (3), the slope of the polynomial of third degree through four values, of which `B(0)` is known, is enough: its error is of order
+//! three. Else the value at `-h/2` begins the second row of (2). The error of a column is what the last step of (2), or (3), changed, as Ridders has
+//! it, and what the flow may leave in its values, over the step; where steps become so short that it is noise, it grows again, and the best is
+//! taken.
 //!
 //! Source: Ridders (1982), Accurate computation of F'(x) and F'(x) F''(x), Adv. Eng. Softw. 4.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::cycle::Cycle;
+use super::cycle::{Cycle, Evaluated};
 use super::error::SensitivityError;
 use super::reader::Along;
 use super::slopes::Slopes;
@@ -37,6 +40,9 @@ const ENOUGH: f64 = 1e-7;
 const LEAST: f64 = 1e-2;
 /// An error that has grown by this from the best is noise.
 const WORSE: f64 = 4.0;
+/// By how much (3), and a row of (2), make an error of values larger, over the step: the sums of the sizes of their weights.
+const OF_HALF: f64 = 16.0 / 3.0;
+const OF_ROW: f64 = 2.0;
 
 /// `X` of (1) for all segments, one below the other: states in their units, and a column for each entry of a state and for each variable.
 #[derive(Debug, Clone)]
@@ -82,89 +88,95 @@ impl Change {
     }
 }
 
-/// (1) along directions in which the beginnings of all segments move, in units of states.
+/// The pieces that all gaps are on, segment by segment, from switch to switch.
+pub(super) type Crossed = Vec<(usize, Vec<usize>)>;
+
+/// The equations at states, and what motions from there cross in which order.
 ///
 /// # Errors
-/// If motions beside the orbit cannot be continued, or cross other levels however near they are.
-pub(super) fn along(
+/// If motions cannot be continued.
+pub(super) fn seen(
     cycle: &mut Cycle,
     states: &[f64],
     variables: &[Variable],
-    directions: &[DVector<f64>],
-) -> Result<Vec<Change>, SensitivityError> {
-    let system = cycle.system.clone();
-    let mut slopes = Slopes::new(&system, &[]);
-    slopes.set(&cycle.values, cycle.omega);
-    let mut lines = Lines {
-        slopes,
-        states,
-        variables,
-        crossed: Vec::new(),
-    };
-    lines.crossed = lines.at(cycle, None)?.1;
-    let changes = directions.iter();
-    let changes = changes.map(|direction| lines.change(cycle, direction));
-    changes.collect()
+) -> Result<(Evaluated, Crossed), FlowError> {
+    let slopes = gaps(cycle);
+    seen_by(cycle, &slopes, states, variables)
 }
 
-/// The pieces that all gaps are on, segment by segment, from switch to switch.
-type Crossed = Vec<(usize, Vec<usize>)>;
+/// The gaps of a system at the present values.
+fn gaps(cycle: &Cycle) -> Slopes {
+    let mut slopes = Slopes::new(&cycle.system, &[]);
+    slopes.set(&cycle.values, cycle.omega);
+    slopes
+}
 
-/// Straight lines through an orbit.
-struct Lines<'l> {
+fn seen_by(
+    cycle: &mut Cycle,
+    slopes: &Slopes,
+    states: &[f64],
+    variables: &[Variable],
+) -> Result<(Evaluated, Crossed), FlowError> {
+    let mut crossed: Crossed = Vec::new();
+    let mut room = vec![0.0; cycle.order()];
+    let evaluated = cycle.evaluate_seen(states, variables, &mut |segment, stretch| {
+        let (from, to) = stretch.phases();
+        let middle = 0.5 * (from + to);
+        stretch.state(middle, &mut room);
+        let last = crossed.last();
+        let is_same = last.is_some_and(|(own, pieces)| {
+            *own == segment && slopes.pieces(middle, &room).eq(pieces.iter().copied())
+        });
+        if !is_same {
+            crossed.push((segment, slopes.pieces(middle, &room).collect()));
+        }
+    })?;
+    Ok((evaluated, crossed))
+}
+
+/// An orbit, from which straight lines lead.
+pub(super) struct Centre<'c> {
     slopes: Slopes,
-    states: &'l [f64],
-    variables: &'l [Variable],
-    /// By the orbit itself.
+    states: &'c [f64],
+    variables: &'c [Variable],
+    /// `B`
+    value: DMatrix<f64>,
     crossed: Crossed,
 }
 
-impl Lines<'_> {
-    /// `B` of all segments at a place of a line, or on the orbit, and what is crossed in which order.
-    fn at(
-        &self,
-        cycle: &mut Cycle,
-        place: Option<(&DVector<f64>, f64)>,
-    ) -> Result<(DMatrix<f64>, Crossed), FlowError> {
-        let mut states = self.states.to_vec();
-        if let Some((direction, h)) = place {
-            for (i, (state, d)) in states.iter_mut().zip(direction).enumerate() {
-                *state += h * d * cycle.unit(i);
-            }
+impl<'c> Centre<'c> {
+    /// Of equations that are known at its states, by these variables.
+    pub(super) fn known(
+        cycle: &Cycle,
+        states: &'c [f64],
+        variables: &'c [Variable],
+        evaluated: &Evaluated,
+        crossed: Crossed,
+    ) -> Self {
+        Self {
+            slopes: gaps(cycle),
+            states,
+            variables,
+            value: both(cycle, evaluated),
+            crossed,
         }
-        let mut crossed: Crossed = Vec::new();
-        let mut room = vec![0.0; cycle.order()];
-        let evaluated = cycle.evaluate_seen(&states, self.variables, &mut |segment, stretch| {
-            let (from, to) = stretch.phases();
-            let middle = 0.5 * (from + to);
-            stretch.state(middle, &mut room);
-            let next = (segment, self.slopes.pieces(middle, &room));
-            if crossed.last() != Some(&next) {
-                crossed.push(next);
-            }
-        })?;
-        let order = cycle.order();
-        let mut all = DMatrix::zeros(cycle.unknowns(), order + self.variables.len());
-        for (segment, matrix) in cycle.matrices(&evaluated).iter().enumerate() {
-            all.view_mut((segment * order, 0), (order, order))
-                .copy_from(matrix);
-        }
-        for (index, by) in evaluated.by.iter().enumerate() {
-            for (i, by) in by.iter().enumerate() {
-                all[(i, order + index)] = by / cycle.unit(i);
-            }
-        }
-        Ok((all, crossed))
     }
 
-    fn change(
+    /// (1) along a direction in which the beginnings of all segments move, in units of states.
+    ///
+    /// # Errors
+    /// If motions beside the orbit cannot be continued, or cross other levels however near they are.
+    pub(super) fn change(
         &self,
         cycle: &mut Cycle,
         direction: &DVector<f64>,
     ) -> Result<Change, SensitivityError> {
-        let length = direction.amax() / cycle.size(self.states).max(f64::MIN_POSITIVE);
+        let size = cycle.size(self.states);
+        // An orbit at rest has no size.
+        let size = if size > 0.0 { size } else { 1.0 };
+        let length = direction.amax() / size;
         let mut step = if length > 0.0 { FIRST / length } else { FIRST };
-        let mut sizes = vec![cycle.size(self.states); cycle.order()];
+        let mut sizes = vec![size; cycle.order()];
         sizes.extend(
             self.variables
                 .iter()
@@ -173,13 +185,15 @@ impl Lines<'_> {
                     value => value.abs(),
                 }),
         );
+        let columns = self.value.column_iter();
+        let noise: Vec<f64> = columns.map(|column| cycle.leaves * column.norm()).collect();
         for _ in 0..SHORTENED {
-            let mut table = Table::new(&sizes);
+            let mut table = Table::new(&sizes, noise.clone());
             match self.extrapolate(cycle, direction, step, &mut table) {
                 Ok(()) if table.is_known() => {
                     return Ok(Change {
+                        errors: table.errors(),
                         values: table.best,
-                        errors: table.errors,
                         units: (0..cycle.order()).map(|i| cycle.unit(i)).collect(),
                     });
                 }
@@ -198,46 +212,117 @@ impl Lines<'_> {
         first: f64,
         table: &mut Table,
     ) -> Result<(), FlowError> {
+        let mut pair: Option<[DMatrix<f64>; 2]> = None;
         for level in 0..LEVELS {
             let step = first * 0.5_f64.powi(level as i32);
-            let (ahead, a) = self.at(cycle, Some((direction, step)))?;
-            let (behind, b) = self.at(cycle, Some((direction, -step)))?;
-            if a != self.crossed || b != self.crossed {
+            let Some(ahead) = self.beside(cycle, direction, step)? else {
+                return Ok(());
+            };
+            if let Some(pair) = &pair
+                && level == 1
+                && table.take_half([&self.value, &pair[0], &pair[1], &ahead], first)
+            {
                 return Ok(());
             }
-            if table.add((ahead - behind) / (2.0 * step)) {
+            let Some(behind) = self.beside(cycle, direction, -step)? else {
+                return Ok(());
+            };
+            if table.add((&ahead - &behind) / (2.0 * step), step) {
                 return Ok(());
             }
+            pair = Some([ahead, behind]);
         }
         Ok(())
     }
+
+    /// `B` at a place of a line; nothing where other levels are crossed, or in another order.
+    fn beside(
+        &self,
+        cycle: &mut Cycle,
+        direction: &DVector<f64>,
+        h: f64,
+    ) -> Result<Option<DMatrix<f64>>, FlowError> {
+        let mut states = self.states.to_vec();
+        for (i, (state, d)) in states.iter_mut().zip(direction).enumerate() {
+            *state += h * d * cycle.unit(i);
+        }
+        let (evaluated, crossed) = seen_by(cycle, &self.slopes, &states, self.variables)?;
+        Ok((crossed == self.crossed).then(|| both(cycle, &evaluated)))
+    }
+}
+
+/// `B` of all segments, one below the other.
+fn both(cycle: &Cycle, evaluated: &Evaluated) -> DMatrix<f64> {
+    let (order, variables) = (cycle.order(), evaluated.by.len());
+    let mut all = DMatrix::zeros(cycle.unknowns(), order + variables);
+    for (segment, matrix) in cycle.matrices(evaluated).iter().enumerate() {
+        all.view_mut((segment * order, 0), (order, order))
+            .copy_from(matrix);
+    }
+    for (index, by) in evaluated.by.iter().enumerate() {
+        for (i, by) in by.iter().enumerate() {
+            all[(i, order + index)] = by / cycle.unit(i);
+        }
+    }
+    all
 }
 
 /// The table (2), with the best of each column.
 struct Table<'t> {
     /// What counts as one in what columns are multiplied by.
     sizes: &'t [f64],
+    /// What the flow may leave in each column of `B`.
+    noise: Vec<f64>,
     before: Vec<DMatrix<f64>>,
     best: DMatrix<f64>,
+    /// What the last step of (2) or (3) changed, and what noise may be in it.
     errors: Vec<f64>,
+    floors: Vec<f64>,
 }
 
 impl<'t> Table<'t> {
-    fn new(sizes: &'t [f64]) -> Self {
+    fn new(sizes: &'t [f64], noise: Vec<f64>) -> Self {
         Self {
             sizes,
+            floors: noise.clone(),
+            noise,
             before: Vec::new(),
             best: DMatrix::zeros(0, 0),
             errors: vec![f64::INFINITY; sizes.len()],
         }
     }
 
+    /// Of the norms of the columns.
+    fn errors(&self) -> Vec<f64> {
+        let both = self.errors.iter().zip(&self.floors);
+        both.map(|(error, floor)| error + floor).collect()
+    }
+
     fn is_known(&self) -> bool {
         self.errors.iter().all(|error| error.is_finite())
     }
 
-    /// Adds a row that begins with a difference; whether it was the last.
-    fn add(&mut self, difference: DMatrix<f64>) -> bool {
+    /// (3), from `B` at `0`, `h`, `-h` and `h / 2`; whether that is enough.
+    fn take_half(&mut self, [here, ahead, behind, half]: [&DMatrix<f64>; 4], h: f64) -> bool {
+        let slope = (ahead - behind) / (2.0 * h);
+        let bend = (ahead - here * 2.0 + behind) / 8.0;
+        let change = (half - here - &slope * (0.5 * h) - bend) * (8.0 / (3.0 * h));
+        for (index, error) in self.errors.iter_mut().enumerate() {
+            *error = Some(change.column(index).norm())
+                .filter(|error| error.is_finite())
+                .unwrap_or(f64::INFINITY);
+            self.floors[index] = OF_HALF * self.noise[index] / h;
+        }
+        self.best = slope + change;
+        let is_enough = self.is_last(&self.errors);
+        if !is_enough {
+            self.errors.fill(f64::INFINITY);
+        }
+        is_enough
+    }
+
+    /// Adds a row that begins with a difference over a step; whether it was the last.
+    fn add(&mut self, difference: DMatrix<f64>, step: f64) -> bool {
         if self.before.is_empty() {
             self.best = difference.clone();
         }
@@ -259,6 +344,7 @@ impl<'t> Table<'t> {
                 *least = least.min(error);
                 if error < self.errors[index] {
                     self.errors[index] = error;
+                    self.floors[index] = OF_ROW * self.noise[index] / step;
                     self.best.set_column(index, &next.column(index));
                 }
             }
@@ -289,13 +375,13 @@ mod tests {
     /// `exp` at zero and a column of zeros: both are known, and the one is one.
     #[test]
     fn differences_are_extrapolated_column_by_column() {
-        let mut table = Table::new(&[1.0, 1.0]);
+        let mut table = Table::new(&[1.0, 1.0], vec![0.0; 2]);
         let mut steps = 0;
         for level in 0..LEVELS {
             let h = 0.1 * 0.5_f64.powi(level as i32);
             let difference = (h.exp() - (-h).exp()) / (2.0 * h);
             steps += 1;
-            if table.add(DMatrix::from_row_slice(1, 2, &[difference, 0.0])) {
+            if table.add(DMatrix::from_row_slice(1, 2, &[difference, 0.0]), h) {
                 break;
             }
         }
@@ -304,12 +390,31 @@ mod tests {
         assert!(table.errors[0] < 1e-8 && table.errors[1] == 0.0);
     }
 
+    /// A cubic is differentiated exactly by four values, a power of four with an error of order three; noise of the values is in the error.
+    #[test]
+    fn four_values_are_enough_where_the_change_is_small() {
+        let h = 0.125;
+        let at = |x: f64| DMatrix::from_row_slice(1, 2, &[x + 2.0 * x.powi(3), x.powi(4)]);
+        let values = [at(0.0), at(h), at(-h), at(0.5 * h)];
+        let mut table = Table::new(&[1.0, 1.0], vec![1e-12, 0.0]);
+        let [a, b, c, d] = &values;
+        assert!(!table.take_half([a, b, c, d], h));
+        assert!((table.best[(0, 0)] - 1.0).abs() < 1e-15);
+        assert!((table.best[(0, 1)] + 0.5 * h.powi(3)).abs() < 1e-15);
+        let linear = |x: f64| DMatrix::from_row_slice(1, 1, &[x]);
+        let values = [linear(0.0), linear(h), linear(-h), linear(0.5 * h)];
+        let mut table = Table::new(&[1.0], vec![1e-12]);
+        let [a, b, c, d] = &values;
+        assert!(table.take_half([a, b, c, d], h));
+        assert_eq!((table.best[(0, 0)], table.errors()[0]), (1.0, 16e-12 / (3.0 * h)));
+    }
+
     /// A difference that is no number is passed over, and what follows counts.
     #[test]
     fn no_number_is_never_the_best() {
-        let mut table = Table::new(&[1.0]);
+        let mut table = Table::new(&[1.0], vec![0.0]);
         for difference in [f64::NAN, 1.0, 1.0] {
-            table.add(DMatrix::from_element(1, 1, difference));
+            table.add(DMatrix::from_element(1, 1, difference), 1.0);
         }
         assert!(table.is_known());
         assert_eq!((table.best[(0, 0)], table.errors[0]), (1.0, 0.0));

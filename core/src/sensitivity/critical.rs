@@ -27,6 +27,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::change::{Centre, Crossed, seen};
 use super::cycle::{Cycle, Evaluated};
 use super::error::SensitivityError;
 use super::multipliers::{self, Multiplier};
@@ -113,6 +114,7 @@ fn solved(
 /// An orbit with the multiplier that crosses.
 struct Critical {
     evaluated: Evaluated,
+    crossed: Crossed,
     multiplier: Multiplier,
     null: Option<Null>,
 }
@@ -134,10 +136,11 @@ impl Critical {
         cycle.solve_by(states, |jacobian, right| {
             solved(jacobian, right, null.as_ref())
         })?;
-        let evaluated = cycle.evaluate(states, variables, &[])?;
+        let (evaluated, crossed) = seen(cycle, states, variables)?;
         let multiplier = nearest(cycle, &evaluated, crosses)?;
         Ok(Self {
             evaluated,
+            crossed,
             multiplier,
             null,
         })
@@ -158,7 +161,9 @@ impl Critical {
         variables: &[Variable],
     ) -> Result<Vec<(f64, f64)>, SensitivityError> {
         let matrices = cycle.matrices(&self.evaluated);
-        let bend = self.multiplier.bend(cycle, states, variables, &matrices)?;
+        let crossed = self.crossed.clone();
+        let centre = Centre::known(cycle, states, variables, &self.evaluated, crossed);
+        let bend = self.multiplier.bend(cycle, &centre, &matrices)?;
         let value = self.multiplier.value;
         let slope = |index: usize| {
             if self.is_unfolded_by(index) {
@@ -284,7 +289,7 @@ pub(super) fn bends(
     let own = variables.iter().position(|variable| *variable == varied);
     let own = own.ok_or(SensitivityError::Singular)?;
     cycle.set(varied, fold.value)?;
-    let evaluated = cycle.evaluate(&fold.states, variables, &[])?;
+    let (evaluated, crossed) = seen(cycle, &fold.states, variables)?;
     let null = null_vectors(&evaluated.jacobian)?;
     let multiplier = nearest(cycle, &evaluated, Crosses::One)?;
     let still = Along {
@@ -307,7 +312,8 @@ pub(super) fn bends(
     let mut last = still;
     last.states.copy_from(&null.1);
     let matrices = cycle.matrices(&evaluated);
-    let bend = multiplier.bend(cycle, &fold.states, variables, &matrices)?;
+    let centre = Centre::known(cycle, &fold.states, variables, &evaluated, crossed);
+    let bend = multiplier.bend(cycle, &centre, &matrices)?;
     let (slope, slope_error) = bend.slope(&last);
     let mut along = Vec::with_capacity(variables.len());
     for (index, direction) in directions.iter().enumerate() {

@@ -33,6 +33,9 @@ const ITERATIONS: usize = 20;
 /// Updates below this part of the orbit have converged, if they do not shrink any more.
 const NEAR: f64 = 1e-6;
 
+/// What rounding leaves of a closed form.
+const EXACT: f64 = 64.0 * f64::EPSILON;
+
 /// A place on an orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stop {
@@ -48,9 +51,14 @@ pub(super) struct AtStop {
 }
 
 impl AtStop {
-    /// How the state moves with that at the beginning of the segment, and with variables by their weights.
-    pub(super) fn moved(&self, states: &[f64], weights: impl Iterator<Item = f64>) -> Vec<f64> {
-        let mut moved = vec![0.0; states.len()];
+    /// Writes how the state moves with that at the beginning of the segment, and with variables by their weights.
+    pub(super) fn moved(
+        &self,
+        states: &[f64],
+        weights: impl Iterator<Item = f64>,
+        moved: &mut [f64],
+    ) {
+        moved.fill(0.0);
         let times = states.iter().copied().chain(weights);
         for (column, times) in self.columns.column_iter().zip(times) {
             if times != 0.0 {
@@ -58,7 +66,6 @@ impl AtStop {
                 both.for_each(|(sum, x)| *sum += times * x);
             }
         }
-        moved
     }
 }
 
@@ -85,6 +92,8 @@ pub(super) struct Cycle {
     pub(super) omega: f64,
     /// The last updates of Newton's method, relative to the orbit, are below this.
     finest: f64,
+    /// What the flow leaves in a state, relative to the largest, and in its derivatives.
+    pub(super) leaves: f64,
 }
 
 impl Cycle {
@@ -102,6 +111,11 @@ impl Cycle {
     ) -> Result<Self, Error> {
         let options = time::Options::default().tolerance(tolerance).cancel(cancel);
         let flow = time::at(system, values, orbit.omega, options)?;
+        let leaves = if flow.is_closed_form() {
+            EXACT
+        } else {
+            tolerance
+        };
         let given = orbit.states.len() / (2 * orbit.coordinates);
         let segments = if orbit.parts == 1 && given > 0 {
             given
@@ -117,7 +131,8 @@ impl Cycle {
             varied,
             values: values.to_vec(),
             omega: orbit.omega,
-            finest: (10.0 * tolerance).max(1e-13),
+            finest: (10.0 * leaves).max(1e-13),
+            leaves,
         })
     }
 

@@ -36,10 +36,9 @@ impl Slope {
         }
     }
 
-    pub(super) fn scaled(mut self, factor: f64) -> Self {
+    pub(super) fn scale(&mut self, factor: f64) {
         self.value *= factor;
         self.by.iter_mut().for_each(|x| *x *= factor);
-        self
     }
 }
 
@@ -56,40 +55,34 @@ pub(super) struct Moments {
 
 impl Moments {
     /// Adds a signal with a weight, and with sine and cosine of every harmonic.
-    pub(super) fn add<'v>(
-        &mut self,
-        value: f64,
-        by: &(impl Iterator<Item = &'v f64> + Clone),
-        weight: f64,
-        waves: &[[f64; 2]],
-    ) {
-        self.mean.add(value, weight, by.clone(), weight);
+    pub(super) fn add(&mut self, value: f64, by: &[f64], weight: f64, waves: &[[f64; 2]]) {
+        self.mean.add(value, weight, by, weight);
         self.square
-            .add(value * value, weight, by.clone(), 2.0 * weight * value);
+            .add(value * value, weight, by, 2.0 * weight * value);
         for ([cosine, sine], [s, c]) in self.series.iter_mut().zip(waves) {
-            cosine.add(value, weight * c, by.clone(), weight * c);
-            sine.add(value, weight * s, by.clone(), weight * s);
+            cosine.add(value, weight * c, by, weight * c);
+            sine.add(value, weight * s, by, weight * s);
         }
     }
 
     pub(super) fn jump(&mut self, [before, after]: [f64; 2], shifts: &[f64], angle: f64) {
         let jump = before - after;
-        self.mean.add(0.0, 0.0, shifts.iter(), jump);
+        self.mean.add(0.0, 0.0, shifts, jump);
         self.square
-            .add(0.0, 0.0, shifts.iter(), before * before - after * after);
+            .add(0.0, 0.0, shifts, before * before - after * after);
         for (index, [cosine, sine]) in self.series.iter_mut().enumerate() {
             let (s, c) = ((index + 1) as f64 * angle).sin_cos();
-            cosine.add(0.0, 0.0, shifts.iter(), jump * c);
-            sine.add(0.0, 0.0, shifts.iter(), jump * s);
+            cosine.add(0.0, 0.0, shifts, jump * c);
+            sine.add(0.0, 0.0, shifts, jump * s);
         }
     }
 
     pub(super) fn divide(&mut self, whole: f64) {
         for sum in [&mut self.mean, &mut self.square] {
-            *sum = sum.clone().scaled(1.0 / whole);
+            sum.scale(1.0 / whole);
         }
         for part in self.series.iter_mut().flatten() {
-            *part = part.clone().scaled(2.0 / whole);
+            part.scale(2.0 / whole);
         }
     }
 
@@ -145,7 +138,7 @@ impl Moments {
 
 impl Slope {
     /// Adds a value times a weight, and derivatives times another one.
-    fn add<'v>(&mut self, value: f64, weight: f64, by: impl Iterator<Item = &'v f64>, times: f64) {
+    fn add(&mut self, value: f64, weight: f64, by: &[f64], times: f64) {
         self.value += weight * value;
         self.by
             .iter_mut()

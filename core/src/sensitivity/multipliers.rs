@@ -14,14 +14,13 @@
 
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
-use super::change::{self, Change};
+use super::change::{Centre, Change};
 use super::cycle::Cycle;
 use super::error::SensitivityError;
 use super::reader::Along;
 use super::{Derivative, Measured, Missing, Sensitivities};
 use crate::numeric::spectrum::ITERATIONS;
 use crate::numeric::triangular::eigenvectors;
-use crate::system::Variable;
 
 /// Multipliers that differ by less than this part of their size are one.
 const SAME: f64 = 1e-7;
@@ -106,12 +105,11 @@ impl Multiplier {
     /// How it moves with an orbit of which the matrices over the segments are known.
     ///
     /// # Errors
-    /// As those of [`change::along`].
+    /// As those of [`Centre::change`].
     pub(super) fn bend(
         &self,
         cycle: &mut Cycle,
-        states: &[f64],
-        variables: &[Variable],
+        centre: &Centre<'_>,
         matrices: &[DMatrix<f64>],
     ) -> Result<Bend, SensitivityError> {
         let complex = |matrix: &DMatrix<f64>| matrix.map(|x| Complex::new(x, 0.0));
@@ -134,8 +132,10 @@ impl Multiplier {
         if self.value.im != 0.0 {
             directions.push(part(|x| x.im));
         }
+        let changes = directions.iter();
+        let changes = changes.map(|direction| centre.change(cycle, direction));
         Ok(Bend {
-            changes: change::along(cycle, states, variables, &directions)?,
+            changes: changes.collect::<Result<_, _>>()?,
             lefts,
             product: self.left.dot(&self.right),
             turned: 2.0 * NOISE * self.size / self.gap,
@@ -190,11 +190,10 @@ impl Bend {
 /// have it: where the orbit is hardly determined, they are what is known least.
 ///
 /// # Errors
-/// As those of [`change::along`].
+/// As those of [`Centre::change`].
 pub(super) fn add(
     cycle: &mut Cycle,
-    states: &[f64],
-    variables: &[Variable],
+    centre: &Centre<'_>,
     matrices: &[DMatrix<f64>],
     directions: &[[&Along; 2]],
     told: &mut Sensitivities,
@@ -230,7 +229,7 @@ pub(super) fn add(
                     .map(|(slope, error)| (slope.conj(), *error))
                     .collect()
             } else {
-                let bend = multiplier.bend(cycle, states, variables, matrices)?;
+                let bend = multiplier.bend(cycle, centre, matrices)?;
                 directions
                     .iter()
                     .map(|along| bend.slope_of(along))

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
+use super::change::{Centre, Crossed};
 use super::cycle::{Cycle, Evaluated};
 use super::error::SensitivityError;
 use super::moments::Slope;
@@ -55,8 +56,9 @@ pub(super) struct Start {
 pub(super) struct Read {
     slopes: Vec<Slope>,
     condition: f64,
-    /// The matrices over the segments, and the directions that were read along.
-    matrices: Vec<DMatrix<f64>>,
+    /// The equations, what is crossed in which order, and the directions that were read along.
+    evaluated: Evaluated,
+    crossed: Crossed,
     along: Vec<Along>,
 }
 
@@ -228,7 +230,10 @@ impl<'p> Sensitive<'p> {
         let both = fine.along.iter().zip(&coarse.along);
         let directions: Vec<[&Along; 2]> = both.map(|(fine, coarse)| [fine, coarse]).collect();
         let (states, variables) = (&start.states, &self.variables);
-        match multipliers::add(cycle, states, variables, &fine.matrices, &directions, told) {
+        let crossed = fine.crossed.clone();
+        let centre = Centre::known(cycle, states, variables, &fine.evaluated, crossed);
+        let matrices = cycle.matrices(&fine.evaluated);
+        match multipliers::add(cycle, &centre, &matrices, &directions, told) {
             Ok(()) => {}
             Err(error) if error.is_cancelled() => return Err(error.into()),
             Err(error) => told
@@ -276,10 +281,13 @@ impl<'p> Sensitive<'p> {
         let along = self.directions(&evaluated)?;
         let condition = condition(&evaluated.jacobian)?;
         let reader = Reader::new(&places, &slopes, &evaluated, &self.variables, &along, cycle);
+        let slopes = self.rows_of(&reader, &slopes, rows, along.len());
+        let arcs = places.scan.arcs.into_iter();
         Ok(Read {
-            slopes: self.rows_of(&reader, &slopes, rows, along.len()),
+            slopes,
             condition,
-            matrices: cycle.matrices(&evaluated),
+            evaluated,
+            crossed: arcs.map(|arc| (arc.segment, arc.pieces)).collect(),
             along,
         })
     }
@@ -316,7 +324,7 @@ impl<'p> Sensitive<'p> {
         }
         let mut slopes = Slopes::new(&self.system, &asked);
         slopes.set(&cycle.values, cycle.omega);
-        let places = Places::of(cycle, &slopes, &start.states, needs(rows, nodes))?;
+        let places = Places::of(cycle, &slopes, &start.states, needs(rows, &asked, nodes))?;
         Ok((slopes, places))
     }
 

@@ -287,7 +287,8 @@ fn distances(
             .ok_or(SensitivityError::Singular)?;
         let begin = &moved.as_slice()[stop.segment * order..][..order];
         let own = (0..variables.len()).map(|other| f64::from(u8::from(other == index)));
-        let here = at.moved(begin, own);
+        let mut here = vec![0.0; order];
+        at.moved(begin, own, &mut here);
         let by = slopes.by(variable);
         Ok(of(
             at,

@@ -13,14 +13,22 @@ use crate::time::FlowError;
 const ANGLE: f64 = 4.0;
 
 /// What is to be read.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Needs {
     pub(super) extremes: bool,
     /// Means and squares.
     pub(super) integrals: bool,
-    pub(super) harmonics: usize,
+    /// Of each signal.
+    pub(super) harmonics: Vec<usize>,
     /// Nodes of a rule.
     pub(super) nodes: usize,
+}
+
+impl Needs {
+    /// The highest harmonic of all signals.
+    pub(super) fn highest(&self) -> usize {
+        self.harmonics.iter().copied().max().unwrap_or(0)
+    }
 }
 
 /// A node of a rule.
@@ -71,12 +79,12 @@ impl Places {
         });
         let extremes = extremes.collect();
         let mut nodes = Vec::new();
-        if needs.integrals || needs.harmonics > 0 {
+        if needs.integrals || needs.highest() > 0 {
             let rule = gauss::rule(needs.nodes);
             for (index, arc) in scan.arcs.iter().enumerate() {
                 let passed = cycle.passed(arc.segment);
                 let length = arc.to - arc.from;
-                let waves = needs.harmonics.max(4 * cycle.period) as f64;
+                let waves = needs.highest().max(4 * cycle.period) as f64;
                 let angle = waves * length / cycle.period as f64;
                 let parts = (angle / ANGLE / needs.nodes as f64 * 8.0).ceil().max(1.0);
                 for part in 0..parts as usize {

@@ -16,7 +16,7 @@ use super::cycle::{Cycle, Evaluated};
 use super::moments::{Moments, Slope};
 use super::places::Places;
 use super::scan::{End, Extreme};
-use super::slopes::{By, Direction, Slopes};
+use super::slopes::{By, Direction, Instant, Moved, Slopes};
 use crate::system::Variable;
 
 /// How states and variables move together.
@@ -71,11 +71,12 @@ impl<'r> Reader<'r> {
     }
 
     /// How the state at a stop moves along a direction.
-    fn moved(&self, stop: usize, direction: usize) -> Vec<f64> {
+    fn moved(&self, stop: usize, direction: usize, moved: &mut [f64]) {
         let along = &self.directions[direction];
         let first = self.places.stops[stop].segment * self.order;
         let begin = &along.states.as_slice()[first..][..self.order];
-        self.evaluated.stops[stop].moved(begin, along.weights.iter().copied())
+        let weights = along.weights.iter().copied();
+        self.evaluated.stops[stop].moved(begin, weights, moved);
     }
 
     /// (1)
@@ -85,8 +86,9 @@ impl<'r> Reader<'r> {
         let pieces = &self.places.scan.arcs[switch.arc].pieces;
         let state = &self.evaluated.stops[stop].state;
         let at = self.slopes.at(self.places.stops[stop].phase, state, pieces);
+        let mut moved = vec![0.0; self.order];
         let of = |direction: usize| {
-            let moved = self.moved(stop, direction);
+            self.moved(stop, direction, &mut moved);
             let along = Direction {
                 state: &moved,
                 by: Some(&self.by[direction]),
@@ -103,20 +105,19 @@ impl<'r> Reader<'r> {
     fn signals(&self, stop: usize, arc: usize, room: &mut Signals) {
         let pieces = &self.places.scan.arcs[arc].pieces;
         let state = &self.evaluated.stops[stop].state;
-        let at = self.slopes.at(self.places.stops[stop].phase, state, pieces);
-        self.slopes.write(&at, &mut room.values);
-        for (direction, slopes) in room
-            .slopes
-            .chunks_exact_mut(self.slopes.count())
-            .enumerate()
-        {
-            let moved = self.moved(stop, direction);
+        let phase = self.places.stops[stop].phase;
+        self.slopes.look(phase, state, pieces, &mut room.at);
+        self.slopes.write(&room.at, &mut room.values);
+        let directions = self.directions.len();
+        for direction in 0..directions {
+            self.moved(stop, direction, &mut room.state);
             let along = Direction {
-                state: &moved,
+                state: &room.state,
                 by: Some(&self.by[direction]),
                 phase: 0.0,
             };
-            self.slopes.along(&at, along, slopes);
+            let slopes = room.slopes.iter_mut().skip(direction).step_by(directions);
+            self.slopes.along(&room.at, along, &mut room.moved, slopes);
         }
     }
 
@@ -132,29 +133,29 @@ impl<'r> Reader<'r> {
 
     /// What is read off every signal.
     pub(super) fn moments(&self) -> Vec<Moments> {
-        let (directions, needs) = (self.directions.len(), self.places.needs);
+        let (directions, needs) = (self.directions.len(), &self.places.needs);
         let zero = Slope::zero(directions);
-        let empty = Moments {
+        let empty = |&harmonics: &usize| Moments {
             largest: None,
             smallest: None,
             mean: zero.clone(),
             square: zero.clone(),
-            series: vec![[zero.clone(), zero]; needs.harmonics],
+            series: vec![[zero.clone(), zero.clone()]; harmonics],
         };
-        let mut moments = vec![empty; self.slopes.count()];
-        let mut room = Signals::new(self.slopes.count(), directions);
-        let mut waves = vec![[0.0; 2]; needs.harmonics];
+        let mut moments: Vec<Moments> = needs.harmonics.iter().map(empty).collect();
+        let mut room = Signals::new(self.slopes, directions);
+        let mut waves = vec![[0.0; 2]; needs.highest()];
         for node in &self.places.nodes {
             self.signals(node.stop, node.arc, &mut room);
             for (index, wave) in waves.iter_mut().enumerate() {
                 *wave = ((index + 1) as f64 * node.angle).sin_cos().into();
             }
-            for (signal, moments) in moments.iter_mut().enumerate() {
-                let by = room.slopes.iter().skip(signal).step_by(self.slopes.count());
-                moments.add(room.values[signal], &by, node.weight, &waves);
+            let slopes = room.slopes.chunks_exact(directions);
+            for ((moments, &value), by) in moments.iter_mut().zip(&room.values).zip(slopes) {
+                moments.add(value, by, node.weight, &waves);
             }
         }
-        if needs.integrals || needs.harmonics > 0 {
+        if needs.integrals || needs.highest() > 0 {
             self.add_jumps(&mut moments);
         }
         let whole = std::f64::consts::TAU * self.period as f64;
@@ -202,12 +203,12 @@ impl<'r> Reader<'r> {
     fn extreme(&self, signal: usize, which: usize) -> Option<Slope> {
         let extreme = self.places.scan.extremes[signal][which]?;
         if let Some(stop) = self.places.extremes[signal][which] {
-            let mut room = Signals::new(self.slopes.count(), self.directions.len());
+            let directions = self.directions.len();
+            let mut room = Signals::new(self.slopes, directions);
             self.signals(stop, extreme.arc, &mut room);
-            let by = room.slopes.iter().skip(signal).step_by(self.slopes.count());
             return Some(Slope {
                 value: extreme.value,
-                by: by.copied().collect(),
+                by: room.slopes[signal * directions..][..directions].to_vec(),
             });
         }
         self.limit(signal, &extreme)
@@ -230,23 +231,24 @@ impl<'r> Reader<'r> {
         );
         // The state moves with the switch alike on both sides of it: that of the arc before is known.
         let before = self.slopes.at(phase, state, &scan.arcs[ends_at].pieces);
-        let rate = self.slopes.state_rate(&before);
+        let mut rate = vec![0.0; self.order];
+        self.slopes.write_rate(&before, &mut rate);
         let at = self.slopes.at(phase, state, &scan.arcs[extreme.arc].pieces);
         let mut slopes = vec![0.0; self.slopes.count()];
+        let (mut with, mut moved) = (vec![0.0; self.order], self.slopes.moved());
         let by = (0..self.directions.len()).map(|direction| {
             let shift = self.shifts[index][direction];
-            let moved = self.moved(stop, direction);
-            let with: Vec<f64> = moved
-                .iter()
-                .zip(&rate)
-                .map(|(s, r)| s + r * shift)
-                .collect();
+            self.moved(stop, direction, &mut with);
+            for (s, r) in with.iter_mut().zip(&rate) {
+                *s += r * shift;
+            }
             let along = Direction {
                 state: &with,
                 by: Some(&self.by[direction]),
                 phase: shift,
             };
-            self.slopes.along(&at, along, &mut slopes);
+            let out = slopes.iter_mut();
+            self.slopes.along(&at, along, &mut moved, out);
             slopes[signal]
         });
         Some(Slope {
@@ -273,21 +275,29 @@ impl<'r> Reader<'r> {
             }
         }
         let whole = std::f64::consts::TAU * self.period as f64;
-        on.into_iter().map(|on| on.scaled(1.0 / whole)).collect()
+        on.iter_mut().for_each(|on| on.scale(1.0 / whole));
+        on
     }
 }
 
-/// Signals at one place, and how they move: along one direction after the other.
+/// Signals at one place, and how they move: each along all directions.
 struct Signals {
     values: Vec<f64>,
     slopes: Vec<f64>,
+    at: Instant,
+    moved: Moved,
+    /// How the state moves along one of them.
+    state: Vec<f64>,
 }
 
 impl Signals {
-    fn new(count: usize, directions: usize) -> Self {
+    fn new(slopes: &Slopes, directions: usize) -> Self {
         Self {
-            values: vec![0.0; count],
-            slopes: vec![0.0; count * directions],
+            values: vec![0.0; slopes.count()],
+            slopes: vec![0.0; slopes.count() * directions],
+            at: slopes.instant(),
+            moved: slopes.moved(),
+            state: vec![0.0; slopes.order()],
         }
     }
 }

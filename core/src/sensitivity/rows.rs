@@ -114,20 +114,24 @@ fn row_of_rate(model: &Model, wanted: &Wanted) -> Option<Row> {
     })
 }
 
-/// What must be computed for measures.
-pub(super) fn needs(rows: &[Row], nodes: usize) -> Needs {
+/// What must be computed for measures of signals.
+pub(super) fn needs(rows: &[Row], asked: &[Asked], nodes: usize) -> Needs {
     let mut needs = Needs {
         extremes: false,
         integrals: false,
-        harmonics: 0,
+        harmonics: vec![0; asked.len()],
         nodes,
     };
-    for measure in rows.iter().map(|row| row.measure) {
-        match measure {
+    for row in rows {
+        match row.measure {
             Measure::PeakToPeak | Measure::Maximum | Measure::Minimum => needs.extremes = true,
             Measure::CrestFactor => (needs.extremes, needs.integrals) = (true, true),
             Measure::Mean | Measure::Rms => needs.integrals = true,
-            Measure::Amplitude(h) | Measure::Phase(h) => needs.harmonics = needs.harmonics.max(h),
+            Measure::Amplitude(h) | Measure::Phase(h) => {
+                let signals = needs.harmonics.iter_mut().zip(asked);
+                let own = signals.filter(|(_, asked)| **asked == row.asked);
+                own.for_each(|(harmonics, _)| *harmonics = h.max(*harmonics));
+            }
             _ => {}
         }
     }

@@ -9,7 +9,7 @@
 //! is known exactly, so that an extreme inside of a stretch is a zero of (1) between two samples. At the ends of an arc one-sided limits count.
 
 use super::cycle::{Cycle, Stop};
-use super::slopes::{Direction, Slopes};
+use super::slopes::{Direction, Instant, Moved, Slopes};
 use crate::numeric::roots::{self, Place};
 use crate::time::{FlowError, Stretch};
 
@@ -83,6 +83,34 @@ struct Sample {
     gaps: Vec<[f64; 2]>,
 }
 
+/// Workspace of a pass.
+struct Room {
+    state: Vec<f64>,
+    rate: Vec<f64>,
+    at: Instant,
+    moved: Moved,
+    /// The last two samples, and one between them.
+    samples: [Sample; 3],
+}
+
+impl Room {
+    fn new(slopes: &Slopes) -> Self {
+        let sample = || Sample {
+            phase: 0.0,
+            values: vec![0.0; slopes.count()],
+            slopes: vec![0.0; slopes.count()],
+            gaps: vec![[0.0; 2]; slopes.contacts()],
+        };
+        Self {
+            state: vec![0.0; slopes.order()],
+            rate: vec![0.0; slopes.order()],
+            at: slopes.instant(),
+            moved: slopes.moved(),
+            samples: [sample(), sample(), sample()],
+        }
+    }
+}
+
 impl Scan {
     /// Along the orbit from these states; gaps are looked at where that is asked for.
     ///
@@ -98,8 +126,7 @@ impl Scan {
             extremes: vec![[None; 2]; slopes.count()],
             ..Self::default()
         };
-        let order = cycle.order();
-        let mut room = vec![0.0; order];
+        let mut room = Room::new(slopes);
         cycle.trace(states, &mut |segment, stretch| {
             scan.include(slopes, segment, stretch, gaps, &mut room);
         })?;
@@ -114,47 +141,47 @@ impl Scan {
         segment: usize,
         stretch: &dyn Stretch,
         gaps: bool,
-        room: &mut [f64],
+        room: &mut Room,
     ) {
         let (from, to) = stretch.phases();
         if from >= to {
             return;
         }
         let middle = 0.5 * (from + to);
-        stretch.state(middle, room);
-        let pieces = slopes.pieces(middle, room);
+        stretch.state(middle, &mut room.state);
         match self.arcs.last_mut() {
-            Some(arc) if arc.segment == segment && arc.pieces == pieces => arc.to = to,
+            Some(arc)
+                if arc.segment == segment
+                    && slopes.pieces(middle, &room.state).eq(arc.pieces.iter().copied()) =>
+            {
+                arc.to = to;
+            }
             _ => self.arcs.push(Arc {
                 segment,
                 from,
                 to,
-                pieces: pieces.clone(),
+                pieces: slopes.pieces(middle, &room.state).collect(),
             }),
         }
         let steps = FEWEST.max(((to - from) / APART).ceil() as usize);
-        let mut before: Option<Sample> = None;
         for index in 0..=steps {
-            let phase = from + (to - from) * index as f64 / steps as f64;
-            let next = sample(slopes, stretch, phase, &pieces, room);
+            // The end is the end itself, so that it is known as one.
+            let phase = if index == steps {
+                to
+            } else {
+                from + (to - from) * index as f64 / steps as f64
+            };
+            self.sample(slopes, stretch, phase, room, 1);
             for signal in 0..slopes.count() {
-                self.consider(signal, next.phase, next.values[signal]);
-                let Some(before) = &before else { continue };
-                let ends = [before, &next].map(|sample| Place {
-                    x: sample.phase,
-                    value: sample.slopes[signal],
-                });
-                if ends[0].value * ends[1].value < 0.0 {
-                    self.refine(signal, ends, &mut |phase| {
-                        let at = sample(slopes, stretch, phase, &pieces, room);
-                        [at.values[signal], at.slopes[signal]]
-                    });
+                self.consider(signal, phase, room.samples[1].values[signal]);
+                if index > 0 {
+                    self.refine(slopes, stretch, signal, room);
                 }
             }
-            if let (true, Some(before)) = (gaps, &before) {
-                self.gap_turns(slopes, stretch, &pieces, [before, &next], room);
+            if gaps && index > 0 {
+                self.gap_turns(slopes, stretch, room);
             }
-            before = Some(next);
+            room.samples.swap(0, 1);
         }
     }
 
@@ -176,43 +203,79 @@ impl Scan {
     }
 
     /// Notes an extreme between two samples whose slopes have opposite signs.
-    fn refine(&mut self, signal: usize, ends: [Place; 2], at: &mut dyn FnMut(f64) -> [f64; 2]) {
-        let root = roots::root(ends[0], ends[1], 0.0, |phase| at(phase)[1]);
+    fn refine(&mut self, slopes: &Slopes, stretch: &dyn Stretch, signal: usize, room: &mut Room) {
+        let [a, b] = [0, 1].map(|index| Place {
+            x: room.samples[index].phase,
+            value: room.samples[index].slopes[signal],
+        });
+        if a.value * b.value >= 0.0 {
+            return;
+        }
+        let root = roots::root(a, b, 0.0, |phase| {
+            self.sample(slopes, stretch, phase, room, 2);
+            room.samples[2].slopes[signal]
+        });
         if let Some(phase) = root {
-            let [value, _] = at(phase);
-            self.consider(signal, phase, value);
+            self.sample(slopes, stretch, phase, room, 2);
+            self.consider(signal, phase, room.samples[2].values[signal]);
         }
     }
 
-    fn gap_turns(
-        &mut self,
-        slopes: &Slopes,
-        stretch: &dyn Stretch,
-        pieces: &[usize],
-        ends: [&Sample; 2],
-        room: &mut [f64],
-    ) {
+    fn gap_turns(&mut self, slopes: &Slopes, stretch: &dyn Stretch, room: &mut Room) {
         for contact in 0..slopes.contacts() {
-            let [a, b] = ends.map(|sample| Place {
-                x: sample.phase,
-                value: sample.gaps[contact][1],
+            let [a, b] = [0, 1].map(|index| Place {
+                x: room.samples[index].phase,
+                value: room.samples[index].gaps[contact][1],
             });
             if a.value * b.value > 0.0 {
                 continue;
             }
             let root = roots::root(a, b, 0.0, |phase| {
-                sample(slopes, stretch, phase, pieces, room).gaps[contact][1]
+                self.sample(slopes, stretch, phase, room, 2);
+                room.samples[2].gaps[contact][1]
             });
             if let Some(phase) = root {
-                let gap = sample(slopes, stretch, phase, pieces, room).gaps[contact][0];
+                self.sample(slopes, stretch, phase, room, 2);
                 self.turns.push(Turn {
                     contact,
                     arc: self.arcs.len() - 1,
                     phase,
-                    gap,
+                    gap: room.samples[2].gaps[contact][0],
                 });
             }
         }
+    }
+
+    /// Takes a sample on the last arc.
+    fn sample(
+        &self,
+        slopes: &Slopes,
+        stretch: &dyn Stretch,
+        phase: f64,
+        room: &mut Room,
+        number: usize,
+    ) {
+        let Some(arc) = self.arcs.last() else { return };
+        let Room {
+            state,
+            rate,
+            at,
+            moved,
+            samples,
+        } = room;
+        let sample = &mut samples[number];
+        stretch.state(phase, state);
+        slopes.look(phase, state, &arc.pieces, at);
+        slopes.write_rate(at, rate);
+        sample.phase = phase;
+        sample.gaps.copy_from_slice(&at.gaps);
+        let direction = Direction {
+            state: rate,
+            by: None,
+            phase: 1.0,
+        };
+        slopes.write(at, &mut sample.values);
+        slopes.along(at, direction, moved, sample.slopes.iter_mut());
     }
 
     fn find_switches(&mut self) {
@@ -256,33 +319,4 @@ impl Scan {
             phase: arc.to - BEFORE * (arc.to - arc.from),
         }
     }
-}
-
-fn sample(
-    slopes: &Slopes,
-    stretch: &dyn Stretch,
-    phase: f64,
-    pieces: &[usize],
-    room: &mut [f64],
-) -> Sample {
-    stretch.state(phase, room);
-    let at = slopes.at(phase, room, pieces);
-    let rate = slopes.state_rate(&at);
-    let count = slopes.count();
-    let mut sample = Sample {
-        phase,
-        values: vec![0.0; count],
-        slopes: vec![0.0; count],
-        gaps: (0..slopes.contacts())
-            .map(|contact| slopes.gap(contact, phase, room))
-            .collect(),
-    };
-    let direction = Direction {
-        state: &rate,
-        by: None,
-        phase: 1.0,
-    };
-    slopes.write(&at, &mut sample.values);
-    slopes.along(&at, direction, &mut sample.slopes);
-    sample
 }

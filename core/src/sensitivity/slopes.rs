@@ -11,9 +11,10 @@
 //! and the derivative of every sum is by the rule of products. Each contact is on a stated piece of its law, so that one-sided limits at
 //! switches have derivatives too.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use crate::law::{Derivatives, On, Variation};
 use crate::laws::single::Single;
@@ -63,9 +64,22 @@ pub(super) struct Instant {
     state: Vec<f64>,
     pieces: Vec<usize>,
     /// Gap and rate of each contact.
-    gaps: Vec<[f64; 2]>,
+    pub(super) gaps: Vec<[f64; 2]>,
     forces: Vec<Single>,
-    pub(super) acceleration: DVector<f64>,
+    pub(super) acceleration: Vec<f64>,
+    /// The waves of the system with their derivatives.
+    waves: Vec<[f64; 3]>,
+    /// Derivatives of forces by arguments, contact by contact, as far as they have been asked for.
+    by_arguments: Vec<Cell<Option<f64>>>,
+    loads: Vec<f64>,
+}
+
+/// Workspace for how forces and accelerations move.
+#[derive(Debug, Clone)]
+pub(super) struct Moved {
+    acceleration: Vec<f64>,
+    forces: Vec<f64>,
+    loads: Vec<f64>,
 }
 
 /// In what direction a derivative is taken.
@@ -90,6 +104,10 @@ pub(super) struct Slopes {
     contacts: Vec<Contact>,
     inverse_mass: DMatrix<f64>,
     mass: Vec<Entry>,
+    /// All waves but the constant one, once each.
+    waves: Vec<Wave>,
+    /// The first of the arguments of each contact among those of all.
+    first_argument: Vec<usize>,
     asked: Vec<Asked>,
     sums: Vec<Vec<Product>>,
     /// Whether a sum has an acceleration or a force.
@@ -110,6 +128,13 @@ fn wave(wave: Wave, phase: f64) -> [f64; 3] {
     [value, h * slope, -h * h * value]
 }
 
+/// A matrix times a vector.
+fn times(matrix: &DMatrix<f64>, vector: &[f64], out: &mut [f64]) {
+    for (row, out) in out.iter_mut().enumerate() {
+        *out = (0..vector.len()).map(|j| matrix[(row, j)] * vector[j]).sum();
+    }
+}
+
 impl Slopes {
     pub(super) fn new(system: &Arc<dyn System>, asked: &[Asked]) -> Self {
         let layout = Layout::of(system);
@@ -126,6 +151,8 @@ impl Slopes {
             contacts: contacts.collect(),
             inverse_mass: DMatrix::identity(n, n),
             mass: layout.mass.clone(),
+            waves: Vec::new(),
+            first_argument: Vec::new(),
             asked: asked.to_vec(),
             sums: Vec::new(),
             has_forces: false,
@@ -138,7 +165,66 @@ impl Slopes {
             .iter()
             .flatten()
             .any(|product| matches!(product.of, Signal::Acceleration(_) | Signal::Force(_)));
+        slopes.number();
         slopes
+    }
+
+    /// Numbers the waves and the arguments of contacts.
+    fn number(&mut self) {
+        let layout = &self.layout;
+        let loads = layout.load.iter().map(|e| e.wave);
+        let matrices = layout.stiffness.iter().map(|e| e.wave);
+        let of_contacts = layout.contacts.iter().flat_map(|contact| {
+            let terms = contact.gap.iter().chain(&contact.offset);
+            terms.chain(&contact.force).map(|term| term.wave)
+        });
+        let of_sums = self.sums.iter().flatten().map(|product| product.wave);
+        for wave in loads.chain(matrices).chain(of_contacts).chain(of_sums) {
+            if wave != Wave::CONSTANT && !self.waves.contains(&wave) {
+                self.waves.push(wave);
+            }
+        }
+        let mut first = 0;
+        for contact in &layout.contacts {
+            self.first_argument.push(first);
+            first += contact.argument_count;
+        }
+    }
+
+    /// Room for motions at one instant.
+    pub(super) fn instant(&self) -> Instant {
+        let (n, count) = (self.layout.coordinates, self.contacts.len());
+        let arguments = self.layout.contacts.iter().map(|c| c.argument_count).sum();
+        Instant {
+            phase: 0.0,
+            state: vec![0.0; 2 * n],
+            pieces: vec![0; count],
+            gaps: Vec::with_capacity(count),
+            forces: Vec::with_capacity(count),
+            acceleration: vec![0.0; n],
+            waves: vec![[0.0; 3]; self.waves.len()],
+            by_arguments: vec![Cell::new(None); arguments],
+            loads: vec![0.0; n],
+        }
+    }
+
+    /// Room for how forces and accelerations move.
+    pub(super) fn moved(&self) -> Moved {
+        let (n, count) = (self.layout.coordinates, self.contacts.len());
+        Moved {
+            acceleration: vec![0.0; n],
+            forces: vec![0.0; count],
+            loads: vec![0.0; n],
+        }
+    }
+
+    /// A wave at an instant.
+    fn wave(&self, wave: Wave, at: &Instant) -> [f64; 3] {
+        if wave == Wave::CONSTANT {
+            return [1.0, 0.0, 0.0];
+        }
+        let known = self.waves.iter().position(|own| *own == wave);
+        known.map_or([f64::NAN; 3], |index| at.waves[index])
     }
 
     fn products(&self, asked: Asked) -> Vec<Product> {
@@ -192,6 +278,11 @@ impl Slopes {
         self.asked.iter().position(|own| *own == asked)
     }
 
+    /// Entries of a state.
+    pub(super) fn order(&self) -> usize {
+        2 * self.layout.coordinates
+    }
+
     /// Number of signals.
     pub(super) fn count(&self) -> usize {
         self.sums.len()
@@ -215,11 +306,15 @@ impl Slopes {
     }
 
     /// The pieces that the gaps are on.
-    pub(super) fn pieces(&self, phase: f64, state: &[f64]) -> Vec<usize> {
-        let gaps = (0..self.contacts.len()).map(|contact| self.gap(contact, phase, state)[0]);
-        gaps.zip(&self.contacts)
-            .map(|(gap, contact)| contact.levels.iter().filter(|&&level| gap > level).count())
-            .collect()
+    pub(super) fn pieces<'p>(
+        &'p self,
+        phase: f64,
+        state: &'p [f64],
+    ) -> impl Iterator<Item = usize> + 'p {
+        self.contacts.iter().enumerate().map(move |(index, contact)| {
+            let gap = self.gap(index, phase, state)[0];
+            contact.levels.iter().filter(|&&level| gap > level).count()
+        })
     }
 
     /// (1)
@@ -252,7 +347,7 @@ impl Slopes {
         let value = |term: &Term| self.value(term.coefficient, direction);
         let mut sum = [0.0; 2];
         for term in &layout.gap {
-            let [w, slope, bend] = wave(term.wave, at.phase);
+            let [w, slope, bend] = self.wave(term.wave, at);
             let (dw, dslope) = (slope * direction.phase, bend * direction.phase);
             let ([d, dd], i) = (value(term), term.index);
             sum[0] += dd * w * q[i] + d * (dw * q[i] + w * dq[i]);
@@ -261,7 +356,7 @@ impl Slopes {
                 + d * base[0] * (dslope * q[i] + slope * dq[i]);
         }
         for term in &layout.offset {
-            let [w, slope, bend] = wave(term.wave, at.phase);
+            let [w, slope, bend] = self.wave(term.wave, at);
             let (dw, dslope) = (slope * direction.phase, bend * direction.phase);
             let [delta, ddelta] = value(term);
             sum[0] -= ddelta * w + delta * dw;
@@ -278,15 +373,22 @@ impl Slopes {
 
     /// The motion at one instant, with every contact on a piece.
     pub(super) fn at(&self, phase: f64, state: &[f64], pieces: &[usize]) -> Instant {
-        let count = self.contacts.len();
-        let mut instant = Instant {
-            phase,
-            state: state.to_vec(),
-            pieces: pieces.to_vec(),
-            gaps: Vec::with_capacity(count),
-            forces: Vec::with_capacity(count),
-            acceleration: DVector::zeros(self.layout.coordinates),
-        };
+        let mut at = self.instant();
+        self.look(phase, state, pieces, &mut at);
+        at
+    }
+
+    /// The same into room that there is.
+    pub(super) fn look(&self, phase: f64, state: &[f64], pieces: &[usize], at: &mut Instant) {
+        at.phase = phase;
+        at.state.copy_from_slice(state);
+        at.pieces.copy_from_slice(pieces);
+        for (value, &of) in at.waves.iter_mut().zip(&self.waves) {
+            *value = wave(of, phase);
+        }
+        at.by_arguments.iter_mut().for_each(|by| by.set(None));
+        at.gaps.clear();
+        at.forces.clear();
         for (index, contact) in self.contacts.iter().enumerate() {
             let piece = pieces[index];
             let [gap, rate] = self.gap(index, phase, state);
@@ -307,34 +409,34 @@ impl Slopes {
             } else {
                 Single::of(law, On::Piece(piece), &contact.arguments, [gap, rate])
             };
-            instant.gaps.push([gap, rate]);
-            instant.forces.push(force);
+            at.gaps.push([gap, rate]);
+            at.forces.push(force);
         }
-        let loads = self.loads(&instant);
-        instant.acceleration = &self.inverse_mass * loads;
-        instant
+        self.load(at);
+        times(&self.inverse_mass, &at.loads, &mut at.acceleration);
     }
 
     /// The right-hand side of (3).
-    fn loads(&self, at: &Instant) -> DVector<f64> {
+    fn load(&self, at: &mut Instant) {
+        let mut loads = std::mem::take(&mut at.loads);
+        loads.fill(0.0);
         let (q, v) = at.state.split_at(self.layout.coordinates);
         let c = &self.coefficients;
-        let mut loads = DVector::zeros(self.layout.coordinates);
         for e in &self.layout.load {
-            loads[e.row] += c[e.coefficient] * wave(e.wave, at.phase)[0];
+            loads[e.row] += c[e.coefficient] * self.wave(e.wave, at)[0];
         }
         for e in &self.layout.damping {
             loads[e.row] -= c[e.coefficient] * v[e.column];
         }
         for e in &self.layout.stiffness {
-            loads[e.row] -= c[e.coefficient] * wave(e.wave, at.phase)[0] * q[e.column];
+            loads[e.row] -= c[e.coefficient] * self.wave(e.wave, at)[0] * q[e.column];
         }
         for (contact, force) in self.layout.contacts.iter().zip(&at.forces) {
             for e in &contact.force {
-                loads[e.index] -= c[e.coefficient] * wave(e.wave, at.phase)[0] * force.force;
+                loads[e.index] -= c[e.coefficient] * self.wave(e.wave, at)[0] * force.force;
             }
         }
-        loads
+        at.loads = loads;
     }
 
     /// (2)
@@ -360,7 +462,17 @@ impl Slopes {
         change
     }
 
+    /// The derivative of a force by an argument: computed once at an instant, however many directions ask for it.
     fn by_argument(&self, contact: usize, at: &Instant, argument: usize) -> f64 {
+        let kept = &at.by_arguments[self.first_argument[contact] + argument];
+        kept.get().unwrap_or_else(|| {
+            let by = self.computed_by_argument(contact, at, argument);
+            kept.set(Some(by));
+            by
+        })
+    }
+
+    fn computed_by_argument(&self, contact: usize, at: &Instant, argument: usize) -> f64 {
         let law = self.system.law(self.layout.contacts[contact].law);
         let [gap, rate] = at.gaps[contact];
         let (mut force, mut by_gap, mut by_rate, mut by) = ([0.0], [0.0], [0.0], [0.0]);
@@ -376,16 +488,17 @@ impl Slopes {
     }
 
     /// (3), and the derivatives of all forces.
-    fn moved(&self, at: &Instant, direction: Direction<'_>) -> (DVector<f64>, Vec<f64>) {
+    fn move_forces(&self, at: &Instant, direction: Direction<'_>, room: &mut Moved) {
         let n = self.layout.coordinates;
         let (q, v) = at.state.split_at(n);
         let (dq, dv) = direction.state.split_at(n);
-        let forces: Vec<f64> = (0..self.contacts.len())
-            .map(|contact| self.force_along(contact, at, direction))
-            .collect();
-        let mut loads = DVector::zeros(n);
+        for (contact, force) in room.forces.iter_mut().enumerate() {
+            *force = self.force_along(contact, at, direction);
+        }
+        let loads = &mut room.loads;
+        loads.fill(0.0);
         let waves = |w: Wave| {
-            let [value, slope, _] = wave(w, at.phase);
+            let [value, slope, _] = self.wave(w, at);
             [value, slope * direction.phase]
         };
         for e in &self.layout.load {
@@ -408,17 +521,19 @@ impl Slopes {
             for e in &contact.force {
                 let ([c, dc], [w, dw]) = (self.value(e.coefficient, direction), waves(e.wave));
                 let force = at.forces[index].force;
-                loads[e.index] -= (dc * w + c * dw) * force + c * w * forces[index];
+                loads[e.index] -= (dc * w + c * dw) * force + c * w * room.forces[index];
             }
         }
-        (&self.inverse_mass * loads, forces)
+        times(&self.inverse_mass, loads, &mut room.acceleration);
     }
 
     /// How the state moves with the phase.
-    pub(super) fn state_rate(&self, at: &Instant) -> Vec<f64> {
+    pub(super) fn write_rate(&self, at: &Instant, rate: &mut [f64]) {
         let velocities = &at.state[self.layout.coordinates..];
-        let rate = velocities.iter().chain(at.acceleration.iter());
-        rate.map(|x| x / self.base).collect()
+        let by_time = velocities.iter().chain(at.acceleration.iter());
+        for (rate, x) in rate.iter_mut().zip(by_time) {
+            *rate = x / self.base;
+        }
     }
 
     /// Writes all signals.
@@ -429,7 +544,7 @@ impl Slopes {
             } else {
                 let products = self.sums[index].iter().map(|product| {
                     let c = product.coefficient.map_or(1.0, |c| self.coefficients[c]);
-                    c * wave(product.wave, at.phase)[0] * self.signal(product.of, at)
+                    c * self.wave(product.wave, at)[0] * self.signal(product.of, at)
                 });
                 products.sum()
             };
@@ -439,7 +554,7 @@ impl Slopes {
     fn power(&self, at: &Instant) -> f64 {
         let v = &at.state[self.layout.coordinates..];
         let load = self.layout.load.iter();
-        load.map(|e| self.coefficients[e.coefficient] * wave(e.wave, at.phase)[0] * v[e.row])
+        load.map(|e| self.coefficients[e.coefficient] * self.wave(e.wave, at)[0] * v[e.row])
             .sum()
     }
 
@@ -454,13 +569,17 @@ impl Slopes {
     }
 
     /// Writes the derivatives of all signals along a direction.
-    pub(super) fn along(&self, at: &Instant, direction: Direction<'_>, out: &mut [f64]) {
-        let (acceleration, forces) = if self.has_forces {
-            self.moved(at, direction)
-        } else {
-            (DVector::zeros(0), Vec::new())
-        };
-        for (index, out) in out.iter_mut().enumerate() {
+    pub(super) fn along<'o>(
+        &self,
+        at: &Instant,
+        direction: Direction<'_>,
+        room: &mut Moved,
+        out: impl Iterator<Item = &'o mut f64>,
+    ) {
+        if self.has_forces {
+            self.move_forces(at, direction, room);
+        }
+        for (index, out) in out.enumerate() {
             if self.asked[index] == Asked::Power {
                 *out = self.power_along(at, direction);
                 continue;
@@ -469,12 +588,12 @@ impl Slopes {
                 let [c, dc] = product
                     .coefficient
                     .map_or([1.0, 0.0], |c| self.value(c, direction));
-                let [w, slope, _] = wave(product.wave, at.phase);
+                let [w, slope, _] = self.wave(product.wave, at);
                 let change = match product.of {
                     Signal::Coordinate(index) => direction.state[index],
                     Signal::Rate(index) => direction.state[self.layout.coordinates + index],
-                    Signal::Acceleration(index) => acceleration[index],
-                    Signal::Force(contact) => forces[contact],
+                    Signal::Acceleration(index) => room.acceleration[index],
+                    Signal::Force(contact) => room.forces[contact],
                     _ => 0.0,
                 };
                 (dc * w + c * slope * direction.phase) * self.signal(product.of, at)
@@ -488,7 +607,7 @@ impl Slopes {
         let n = self.layout.coordinates;
         let (v, dv) = (&at.state[n..], &direction.state[n..]);
         let load = self.layout.load.iter().map(|e| {
-            let [w, slope, _] = wave(e.wave, at.phase);
+            let [w, slope, _] = self.wave(e.wave, at);
             let [c, dc] = self.value(e.coefficient, direction);
             (dc * w + c * slope * direction.phase) * v[e.row] + c * w * dv[e.row]
         });

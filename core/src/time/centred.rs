@@ -145,6 +145,10 @@ impl Flow for Centred {
         Ok(())
     }
 
+    fn is_closed_form(&self) -> bool {
+        self.flow.is_closed_form()
+    }
+
     fn work(&self) -> Work {
         self.flow.work()
     }

@@ -71,31 +71,51 @@ pub trait Flow: Send {
     /// As [`advance`](Self::advance) with a tangent, which is shown with the state at phases between, in the order of the motion: with the
     /// number of the phase. A flow that knows both between its own steps makes none shorter for them.
     ///
+    /// Stops are finite and in the order in which the motion passes them; one that is not between the ends is taken for the nearest place that is
+    /// left. The tangent is that by the state at `from`. A stop that is on a switch, but for rounding, is before or behind it: who needs one side
+    /// of a jump stops beside it. Each stop is shown once, unless the motion ends before it.
+    ///
     /// # Errors
     /// As there.
     fn advance_by(
         &mut self,
-        [from, to]: [f64; 2],
+        ends: [f64; 2],
         stops: &[f64],
         state: &mut [f64],
         tangent: &mut Tangent,
         show: Show<'_>,
     ) -> Result<(), FlowError> {
-        let mut here = from;
-        for (number, &stop) in stops.iter().enumerate() {
-            // What is no number is not compared: the motion refuses it.
-            let next = stop.max(here.min(to)).min(here.max(to));
-            if next != here {
-                self.advance(here, next, state, Some(tangent), None)?;
-            }
-            show(number, state, &tangent.columns);
-            here = next;
-        }
-        self.advance(here, to, state, Some(tangent), None)
+        from_stop_to_stop(self, ends, stops, state, tangent, show)
+    }
+
+    /// Whether it is a closed form, which is exact to rounding whatever tolerance was asked for.
+    fn is_closed_form(&self) -> bool {
+        false
     }
 
     /// The work done since the flow was made.
     fn work(&self) -> Work;
+}
+
+/// Moves from one stop to the next: [`Flow::advance_by`] of a flow that knows nothing between its ends.
+pub(crate) fn from_stop_to_stop<F: Flow + ?Sized>(
+    flow: &mut F,
+    [from, to]: [f64; 2],
+    stops: &[f64],
+    state: &mut [f64],
+    tangent: &mut Tangent,
+    show: Show<'_>,
+) -> Result<(), FlowError> {
+    let mut here = from;
+    for (number, &stop) in stops.iter().enumerate() {
+        let next = stop.max(here.min(to)).min(here.max(to));
+        if next != here {
+            flow.advance(here, next, state, Some(tangent), None)?;
+        }
+        show(number, state, &tangent.columns);
+        here = next;
+    }
+    flow.advance(here, to, state, Some(tangent), None)
 }
 
 /// How a flow is made.

@@ -60,6 +60,8 @@ pub struct Affine {
     next: Vec<f64>,
     /// The flow of the reversed motion; made when it is needed.
     reversed: Option<Box<Self>>,
+    /// Flows whose tables have derivatives by other variables, at the present values; made when they are needed.
+    beside: Vec<(Variable, Self)>,
     work: Work,
     cancel: Cancel,
 }
@@ -88,8 +90,9 @@ impl Affine {
     pub fn until(self, cancel: &Cancel) -> Self {
         Self {
             cancel: cancel.clone(),
-            // It is made anew, with the token.
+            // These are made anew, with the token.
             reversed: None,
+            beside: Vec::new(),
             ..self
         }
     }
@@ -112,6 +115,7 @@ impl Affine {
             scalar: Scalar::new(&model),
             filled: false,
             reversed: None,
+            beside: Vec::new(),
             model,
         }
     }
@@ -341,6 +345,7 @@ impl Flow for Affine {
 
     fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
         self.filled = false;
+        self.beside.clear();
         self.model.set(variable, value)?;
         self.reversed
             .as_mut()
@@ -359,10 +364,12 @@ impl Flow for Affine {
         if to < from {
             return self.go_back(from, to, state, tangent, see);
         }
-        if tangent.as_ref().is_some_and(|tangent| tangent.by.len() > 1) {
-            return self.advance_by_each([from, to], state, tangent, see);
+        match tangent {
+            Some(tangent) if tangent.by.len() > 1 => {
+                self.advance_by_each([from, to], state, tangent, see)
+            }
+            tangent => self.advance_one(from, to, state, tangent, see),
         }
-        self.advance_one(from, to, state, tangent, see)
     }
 
     fn advance_by(
@@ -375,6 +382,10 @@ impl Flow for Affine {
     ) -> Result<(), FlowError> {
         check_entries(self.coordinates(), state, Some(tangent))?;
         self.shown_by_each(ends, stops, state, tangent, show)
+    }
+
+    fn is_closed_form(&self) -> bool {
+        true
     }
 
     fn work(&self) -> Work {

@@ -96,6 +96,11 @@ impl Model {
         Ok(Self::of(system, parameters, omega, false))
     }
 
+    /// The same system at the same values, of which nothing is tabulated yet.
+    pub(super) fn again(&self) -> Self {
+        Self::of(&self.system, &self.parameters, self.omega, self.backwards)
+    }
+
     /// The same system at the same values, with time reversed.
     pub(super) fn reversed(&self) -> Self {
         Self::of(&self.system, &self.parameters, self.omega, !self.backwards)

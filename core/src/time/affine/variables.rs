@@ -1,7 +1,8 @@
-//! Derivatives by several variables, one after the other: the tables of a model have the derivatives of all its terms by one.
+//! Derivatives by several variables. The tables of a model have the derivatives of all its terms by one of them: each of the others has a flow of
+//! its own, whose tables stay as long as the values do.
 
 use super::Affine;
-use crate::time::{Flow, FlowError, See, Show, Tangent};
+use crate::time::{Flow, FlowError, See, Show, Tangent, from_stop_to_stop};
 
 impl Affine {
     /// A motion with derivatives by several variables.
@@ -12,18 +13,18 @@ impl Affine {
         &mut self,
         ends: [f64; 2],
         state: &mut [f64],
-        tangent: Option<&mut Tangent>,
+        tangent: &mut Tangent,
         mut see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
-        let Some(tangent) = tangent else {
-            return Ok(());
-        };
         let [from, to] = ends;
         let start = state.to_vec();
         for mut part in parts(tangent, start.len()) {
             state.copy_from_slice(&start);
             // It is the same motion each time, to the same end, and shown once.
-            let moved = self.advance(from, to, state, Some(&mut part.tangent), see.take());
+            let see = see.take();
+            let moved = self.with(&mut part, |flow, tangent| {
+                flow.advance(from, to, state, Some(tangent), see)
+            });
             part.put(&mut tangent.columns);
             moved?;
         }
@@ -36,7 +37,7 @@ impl Affine {
     /// As there.
     pub(super) fn shown_by_each(
         &mut self,
-        [from, to]: [f64; 2],
+        ends: [f64; 2],
         stops: &[f64],
         state: &mut [f64],
         tangent: &mut Tangent,
@@ -48,17 +49,14 @@ impl Affine {
         let mut columns = vec![0.0; size * stops.len()];
         for mut part in parts(tangent, order) {
             state.copy_from_slice(&start);
-            let mut here = from;
-            for (number, &stop) in stops.iter().enumerate() {
-                let next = stop.max(here.min(to)).min(here.max(to));
-                if next != here {
-                    self.advance(here, next, state, Some(&mut part.tangent), None)?;
-                }
+            let first = part.first;
+            let mut keep = |number: usize, state: &[f64], own: &[f64]| {
                 states[number * order..][..order].copy_from_slice(state);
-                part.put(&mut columns[number * size..][..size]);
-                here = next;
-            }
-            self.advance(here, to, state, Some(&mut part.tangent), None)?;
+                columns[number * size + first..][..own.len()].copy_from_slice(own);
+            };
+            self.with(&mut part, |flow, own| {
+                from_stop_to_stop(flow, ends, stops, state, own, &mut keep)
+            })?;
             part.put(&mut tangent.columns);
         }
         for number in 0..stops.len() {
@@ -66,6 +64,25 @@ impl Affine {
             show(number, state, &columns[number * size..][..size]);
         }
         Ok(())
+    }
+
+    /// Moves a part of a tangent by the flow whose tables are by its variable.
+    fn with<T>(&mut self, part: &mut Part, advance: impl FnOnce(&mut Self, &mut Tangent) -> T) -> T {
+        let variable = part.tangent.by.first().copied();
+        let Some(variable) = variable.filter(|_| part.first > 0) else {
+            return advance(self, &mut part.tangent);
+        };
+        let known = self.beside.iter().position(|(own, _)| *own == variable);
+        let index = known.unwrap_or_else(|| {
+            let model = self.model.again();
+            let flow = Self::of(model).until(&self.cancel);
+            self.beside.push((variable, flow));
+            self.beside.len() - 1
+        });
+        let flow = &mut self.beside[index].1;
+        let moved = advance(flow, &mut part.tangent);
+        self.work += std::mem::take(&mut flow.work);
+        moved
     }
 }
 

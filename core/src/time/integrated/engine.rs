@@ -1,6 +1,7 @@
 //! Where the motion is, and the workspace of its steps.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use crate::cancel::Cancel;
 use crate::law::{Quantity, TermFacts, is_unbounded};
@@ -13,6 +14,7 @@ use crate::time::field::slopes::Slopes;
 use crate::time::field::{Field, Gap};
 use crate::time::{FlowError, Work};
 
+use super::kept::kept;
 use super::map::{Map, Tables};
 use super::rule::Rule;
 use super::step_control::{Aim, SHORTEST};
@@ -100,9 +102,9 @@ impl Trial {
 pub(super) struct Engine<const S: usize> {
     pub(super) field: Field,
     pub(super) tolerance: f64,
-    pub(super) rule: Box<Rule<S>>,
+    pub(super) rule: Arc<Rule<S>>,
     /// One for each map that has been needed; the first is plain.
-    pub(super) tables: Vec<Tables<S>>,
+    pub(super) tables: Vec<Arc<Tables<S>>>,
     /// Powers that grade a step at the lower and the upper end of each piece of each contact, and for which variables.
     pub(super) powers: Vec<Vec<[u32; 2]>>,
     powers_by: Vec<Variable>,
@@ -157,7 +159,7 @@ impl<const S: usize> Engine<S> {
     pub(super) fn new(field: Field, tolerance: f64) -> Self {
         let n = field.coordinates();
         let contacts = field.contacts.len();
-        let rule = Box::new(Rule::new());
+        let rule = kept(Map::PLAIN, Rule::new);
         let rows = || vec![[0.0; S]; n];
         let (end, gap) = (End::Start, 0.0);
         let anchor = Anchor { end, gap };
@@ -166,7 +168,7 @@ impl<const S: usize> Engine<S> {
         let levels = levels.max().unwrap_or(0);
         Self {
             tolerance,
-            tables: vec![Tables::new(&rule, Map::PLAIN)],
+            tables: vec![Tables::kept(&rule, Map::PLAIN)],
             powers: (0..contacts)
                 .map(|contact| vec![[1; 2]; field.law(contact).facts().pieces.len()])
                 .collect(),
@@ -381,7 +383,7 @@ impl<const S: usize> Engine<S> {
     pub(super) fn table(&mut self, map: Map) -> usize {
         let known = self.tables.iter().position(|tables| tables.map == map);
         known.unwrap_or_else(|| {
-            self.tables.push(Tables::new(&self.rule, map));
+            self.tables.push(Tables::kept(&self.rule, map));
             self.tables.len() - 1
         })
     }

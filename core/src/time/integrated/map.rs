@@ -23,8 +23,11 @@
 //! Source: Hairer, Lubich and Wanner (2006), Geometric Numerical Integration, section II.1.4 (collocation); Davis and
 //! Rabinowitz (1984), Methods of Numerical Integration, sections 2.5.6 (product integration) and 2.12 (maps).
 
+use std::sync::Arc;
+
 use crate::numeric::fourier::gauss;
 
+use super::kept::kept;
 use super::rule::{HIGHEST, Rule};
 
 /// Where a step is graded, and with which power.
@@ -105,6 +108,11 @@ pub(super) struct Tables<const S: usize> {
 }
 
 impl<const S: usize> Tables<S> {
+    /// Those of a map, as they were made before.
+    pub(super) fn kept(rule: &Rule<S>, map: Map) -> Arc<Self> {
+        kept(map, || Self::new(rule, map))
+    }
+
     pub(super) fn new(rule: &Rule<S>, map: Map) -> Self {
         let u = rule.nodes;
         // 1 - u_j is a node too.

@@ -10,6 +10,7 @@
 
 mod crossing;
 mod engine;
+mod kept;
 mod kink;
 mod map;
 mod noise;
