@@ -136,6 +136,11 @@ impl Cycle {
         })
     }
 
+    /// Whether its flow is exact to rounding.
+    pub(super) fn is_closed_form(&self) -> bool {
+        self.flow.is_closed_form()
+    }
+
     /// Entries of a state.
     pub(super) fn order(&self) -> usize {
         2 * self.coordinates
