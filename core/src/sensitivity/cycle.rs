@@ -33,8 +33,9 @@ const ITERATIONS: usize = 20;
 /// Updates below this part of the orbit have converged, if they do not shrink any more.
 const NEAR: f64 = 1e-6;
 
-/// What rounding leaves of a closed form.
+/// What rounding leaves of a closed form, and of sums over the nodes of rules.
 const EXACT: f64 = 64.0 * f64::EPSILON;
+const SMALLEST: f64 = 1e-12;
 
 /// A place on an orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -134,6 +135,11 @@ impl Cycle {
             finest: (10.0 * leaves).max(1e-13),
             leaves,
         })
+    }
+
+    /// A harmonic below this part of the effective value is what the flow leaves.
+    pub(super) fn vanishes(&self) -> f64 {
+        self.leaves.max(SMALLEST)
     }
 
     /// Whether its flow is exact to rounding.

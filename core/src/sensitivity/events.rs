@@ -12,7 +12,7 @@ use super::critical::{self, Crosses};
 use super::cycle::Cycle;
 use super::error::SensitivityError;
 use super::moments::Slope;
-use super::orbit::{BESIDE, FINE, ROUNDINGS, Sensitive, Start, apart};
+use super::orbit::{BESIDE, FINE, ROUNDINGS, Sensitive, Start, apart, finite, unless_cancelled};
 use super::place::{self, Moving};
 use super::rows::Row;
 use super::{Derivative, Measured, Missing, Sensitivities};
@@ -35,10 +35,15 @@ impl Sensitive<'_> {
         let mut cycle = self.cycle(FINE.0)?;
         let start = self.start(&mut cycle)?;
         let crosses = Crosses::at(event.kind, self.point.orbit.parts);
-        let by_both = |cycle: &mut Cycle, find: &Find<'_>| -> Result<[Moving; 2], Error> {
+        let by_both = |cycle: &mut Cycle, find: &Find<'_>| -> Result<Found, Error> {
             let fine = find(cycle, &start)?;
-            let beside = find(&mut self.cycle(BESIDE.0)?, &fine.start())?;
-            Ok([fine, beside])
+            let beside = self
+                .cycle(BESIDE.0)
+                .and_then(|mut own| Ok(find(&mut own, &fine.start())?));
+            Ok(Found {
+                beside: unless_cancelled(beside)?,
+                fine,
+            })
         };
         let both = match (event.kind, crosses) {
             (_, Some(crosses)) => by_both(&mut cycle, &|cycle, start| {
@@ -88,11 +93,15 @@ impl Sensitive<'_> {
     }
 
     /// Derivatives of a place by all variables, as two flows have it: none by what is varied.
-    fn placed(&self, [fine, beside]: &[Moving; 2]) -> Vec<Option<Derivative>> {
-        let both = fine.by.iter().zip(&beside.by).zip(&fine.errors);
-        let mut known = both.map(|((&value, beside), own)| Derivative {
-            value,
-            error: (value - beside).abs() + own + ROUNDINGS * f64::EPSILON * value.abs(),
+    fn placed(&self, Found { fine, beside }: &Found) -> Vec<Option<Derivative>> {
+        let both = fine.by.iter().zip(&fine.errors).enumerate();
+        let mut known = both.map(|(index, (&value, own))| {
+            let beside = beside.as_ref().map(|beside| beside.by[index]);
+            let apart = beside.map_or(f64::INFINITY, |beside| (value - beside).abs());
+            Derivative {
+                value,
+                error: finite(apart + own + ROUNDINGS * f64::EPSILON * value.abs()),
+            }
         });
         let place = self.variables.iter().map(|variable| {
             let own = *variable == self.varied;
@@ -105,14 +114,15 @@ impl Sensitive<'_> {
     fn add_at_event(
         &self,
         cycle: &mut Cycle,
-        [moving, beside]: &[Moving; 2],
+        Found { fine, beside }: &Found,
         rows: &[Row],
         multipliers: bool,
         told: &mut Sensitivities,
     ) -> Result<(), Error> {
-        let mut start = moving.start();
+        let mut start = fine.start();
         self.settle(cycle, &mut start)?;
-        let (mut at, read) = self.at(cycle, &start, &beside.start(), rows)?;
+        let near = beside.as_ref().map_or_else(|| start.clone(), Moving::start);
+        let (mut at, read) = self.at(cycle, &start, &near, rows)?;
         if multipliers {
             self.add_multipliers(cycle, &start, &read, &mut at)?;
         }
@@ -139,14 +149,11 @@ impl Sensitive<'_> {
     fn add_of_fold(
         &self,
         cycle: &mut Cycle,
-        [fold, beside]: &[Moving; 2],
+        Found { fine, beside }: &Found,
         rows: &[Row],
         told: &mut Sensitivities,
     ) -> Result<(), Error> {
-        let mut own = self.cycle(BESIDE.0)?;
-        let bends = critical::bends(cycle, fold, &self.variables)
-            .and_then(|fine| Ok([fine, critical::bends(&mut own, beside, &self.variables)?]));
-        let bends = match bends {
+        let bends = match critical::bends(cycle, fine, &self.variables) {
             Ok(bends) => bends,
             Err(error) if error.is_cancelled() => return Err(error.into()),
             Err(error) => {
@@ -154,20 +161,39 @@ impl Sensitive<'_> {
                 return Ok(());
             }
         };
-        let fine = self.read_along(cycle, &fold.start(), rows, FINE.1, &bends[0].directions)?;
-        let start = beside.start();
-        let beside = self.read_along(&mut own, &start, rows, BESIDE.1, &bends[1].directions)?;
-        for (row, both) in rows.iter().zip(fine.iter().zip(&beside)) {
-            let (fine, errors) = moved(both.0, &bends[0]);
-            let (beside, _) = moved(both.1, &bends[1]);
-            let mut by = apart(&fine, &beside, ROUNDINGS * f64::EPSILON);
+        let (start, directions) = (fine.start(), &bends.directions);
+        let vanishes = cycle.vanishes();
+        let read = self.read_along(cycle, &start, rows, FINE.1, directions, vanishes)?;
+        let beside = beside
+            .as_ref()
+            .map(|beside| self.read_of_fold(beside, rows));
+        let beside = beside.map(unless_cancelled).transpose()?.flatten();
+        for (index, (row, slope)) in rows.iter().zip(&read).enumerate() {
+            let (slope, errors) = moved(slope, &bends);
+            let beside = beside.as_ref().map(|beside| &beside[index]);
+            let mut by = apart(&slope, beside, ROUNDINGS * f64::EPSILON);
             for (by, error) in by.iter_mut().zip(errors) {
-                by.error += error;
+                by.error = finite(by.error + error);
             }
-            told.add_moving(row, fine.value, by);
+            told.add_moving(row, slope.value, by);
         }
         Ok(())
     }
+
+    /// What is read off at a fold by the flow that tells errors, as it moves.
+    fn read_of_fold(&self, fold: &Moving, rows: &[Row]) -> Result<Vec<Slope>, Error> {
+        let mut cycle = self.cycle(BESIDE.0)?;
+        let bends = critical::bends(&mut cycle, fold, &self.variables)?;
+        let (start, directions) = (fold.start(), &bends.directions);
+        let read = self.read_along(&mut cycle, &start, rows, BESIDE.1, directions, 0.0)?;
+        Ok(read.iter().map(|slope| moved(slope, &bends).0).collect())
+    }
+}
+
+/// An event by two flows; nothing of the second one where that fails, which leaves errors unknown.
+struct Found {
+    fine: Moving,
+    beside: Option<Moving>,
 }
 
 /// What finds an event and says how its place moves.

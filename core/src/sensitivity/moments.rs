@@ -2,10 +2,6 @@
 
 use crate::orbit::observe::Measure;
 
-/// A harmonic below this part of the effective value is what the flow leaves: of one that vanishes, as even ones of a symmetric motion, neither
-/// amplitude nor phase has a derivative.
-const VANISHES: f64 = 1e-12;
-
 /// A number, and its derivatives along all directions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Slope {
@@ -86,16 +82,17 @@ impl Moments {
         }
     }
 
-    /// A harmonic and its amplitude, if it does not vanish.
-    fn harmonic(&self, number: usize) -> Option<(&[Slope; 2], f64)> {
+    /// A harmonic and its amplitude, if that is above a part of the effective value: of one that vanishes, as even ones of a symmetric motion,
+    /// neither amplitude nor phase has a derivative.
+    fn harmonic(&self, number: usize, vanishes: f64) -> Option<(&[Slope; 2], f64)> {
         let parts = self.series.get(number.checked_sub(1)?)?;
         let amplitude = parts[0].value.hypot(parts[1].value);
-        let least = VANISHES * self.square.value.max(0.0).sqrt();
+        let least = vanishes * self.square.value.max(0.0).sqrt();
         (amplitude > least).then_some((parts, amplitude))
     }
 
     /// What is asked of the signal; `None` where it has no derivative, or is one of contacts.
-    pub(super) fn measure(&self, measure: Measure) -> Option<Slope> {
+    pub(super) fn measure(&self, measure: Measure, vanishes: f64) -> Option<Slope> {
         let (largest, smallest) = (self.largest.as_ref(), self.smallest.as_ref());
         let rms = || {
             let rms = self.square.value.max(0.0).sqrt();
@@ -122,12 +119,12 @@ impl Moments {
                 Slope::of([far.0, &rms], crest, [sign / rms.value, -crest / rms.value])
             }
             Measure::Amplitude(harmonic) => {
-                let ([c, s], amplitude) = self.harmonic(harmonic)?;
+                let ([c, s], amplitude) = self.harmonic(harmonic, vanishes)?;
                 let parts = [c.value / amplitude, s.value / amplitude];
                 Slope::of([c, s], amplitude, parts)
             }
             Measure::Phase(harmonic) => {
-                let ([c, s], amplitude) = self.harmonic(harmonic)?;
+                let ([c, s], amplitude) = self.harmonic(harmonic, vanishes)?;
                 let parts = [-s.value / amplitude.powi(2), c.value / amplitude.powi(2)];
                 Slope::of([c, s], s.value.atan2(c.value), parts)
             }

@@ -17,6 +17,7 @@ use nalgebra::{Complex, DMatrix, DVector, Schur};
 use super::change::{Centre, Change};
 use super::cycle::Cycle;
 use super::error::SensitivityError;
+use super::orbit::finite;
 use super::reader::Along;
 use super::{Derivative, Measured, Missing, Sensitivities};
 use crate::numeric::spectrum::ITERATIONS;
@@ -115,8 +116,14 @@ impl Multiplier {
         let complex = |matrix: &DMatrix<f64>| matrix.map(|x| Complex::new(x, 0.0));
         let (mut right, mut left) = (self.right.clone(), self.left.clone());
         let mut rights = Vec::with_capacity(cycle.unknowns());
+        // (1) is linear in each `v_i`: of length one all segments are differenced over steps that suit them.
+        let mut lengths = Vec::with_capacity(matrices.len());
         for matrix in matrices {
-            rights.extend(right.iter().copied());
+            let length = Some(right.norm())
+                .filter(|length| *length > 0.0)
+                .unwrap_or(1.0);
+            rights.extend(right.iter().map(|x| x / length));
+            lengths.push(length);
             right = complex(matrix) * right;
         }
         let mut lefts = Vec::with_capacity(matrices.len());
@@ -125,6 +132,9 @@ impl Multiplier {
             left = complex(matrix).tr_mul(&left);
         }
         lefts.reverse();
+        for (left, length) in lefts.iter_mut().zip(lengths) {
+            left.scale_mut(length);
+        }
         let part = |of: fn(&Complex<f64>) -> f64| {
             DVector::from_iterator(rights.len(), rights.iter().map(of))
         };
@@ -147,7 +157,7 @@ impl Multiplier {
 pub(super) struct Bend {
     /// Along the real part of `v`, and along its imaginary part if there is one.
     changes: Vec<Change>,
-    /// `w M_m .. M_(i+1)`
+    /// `w M_m .. M_(i+1)`, times the length of `v_i`.
     lefts: Vec<DVector<Complex<f64>>>,
     /// `w v`
     product: Complex<f64>,
@@ -156,11 +166,14 @@ pub(super) struct Bend {
 }
 
 impl Bend {
-    /// (1) along the first of two directions, and its error, to which the other adds.
-    fn slope_of(&self, [along, other]: &[&Along; 2]) -> (Complex<f64>, f64) {
+    /// (1) along a direction, and its error, to which the same by another flow adds; infinite without that.
+    fn slope_of(&self, along: &Along, other: Option<&Along>) -> (Complex<f64>, f64) {
         let (slope, error) = self.slope(along);
-        let (beside, _) = self.slope(other);
-        (slope, error + (slope - beside).norm())
+        let apart = other.map_or(f64::INFINITY, |other| {
+            let (beside, _) = self.slope(other);
+            (slope - beside).norm()
+        });
+        (slope, finite(error + apart))
     }
 
     /// (1) along a direction, and its error.
@@ -195,7 +208,7 @@ pub(super) fn add(
     cycle: &mut Cycle,
     centre: &Centre<'_>,
     matrices: &[DMatrix<f64>],
-    directions: &[[&Along; 2]],
+    directions: &[(&Along, Option<&Along>)],
     told: &mut Sensitivities,
 ) -> Result<(), SensitivityError> {
     let all = of(&product(matrices));
@@ -232,7 +245,7 @@ pub(super) fn add(
                 let bend = multiplier.bend(cycle, centre, matrices)?;
                 directions
                     .iter()
-                    .map(|along| bend.slope_of(along))
+                    .map(|(along, other)| bend.slope_of(along, *other))
                     .collect()
             };
         for part in ["re", "im"] {

@@ -19,7 +19,7 @@ use super::{Derivative, Measured, Missing, Sensitivities, multipliers};
 use crate::branches::branch::{Branch, Model};
 use crate::branches::point::Point;
 use crate::cancel::Cancel;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::model::request::RequestError;
 use crate::orbit::observe::Measure;
 use crate::system::{System, Variable};
@@ -60,6 +60,29 @@ pub(super) struct Read {
     evaluated: Evaluated,
     crossed: Crossed,
     along: Vec<Along>,
+}
+
+/// What is read off by two flows; nothing of the coarser one where that fails, which leaves errors unknown.
+pub(super) struct Both {
+    fine: Read,
+    coarse: Option<Read>,
+}
+
+/// What was computed; nothing if it failed.
+///
+/// # Errors
+/// If it was cancelled.
+pub(super) fn unless_cancelled<T>(computed: Result<T, Error>) -> Result<Option<T>, Error> {
+    match computed {
+        Ok(computed) => Ok(Some(computed)),
+        Err(error) if error.kind() == ErrorKind::Cancelled => Err(error),
+        Err(_) => Ok(None),
+    }
+}
+
+/// An error that is no number is one of which nothing is known.
+pub(super) fn finite(error: f64) -> f64 {
+    if error.is_nan() { f64::INFINITY } else { error }
 }
 
 impl<'p> Sensitive<'p> {
@@ -167,7 +190,8 @@ impl<'p> Sensitive<'p> {
         let mut cycle = self.cycle(QUICK.0)?;
         let mut start = self.start(&mut cycle)?;
         self.settle(&mut cycle, &mut start)?;
-        let read = self.read(&mut cycle, &start, rows, QUICK.1)?;
+        let vanishes = cycle.vanishes();
+        let read = self.read(&mut cycle, &start, rows, QUICK.1, vanishes)?;
         let mut told = self.told(read.condition);
         for (row, slope) in rows.iter().zip(read.slopes) {
             let by = slope.by.into_iter().map(|value| Derivative {
@@ -195,23 +219,28 @@ impl<'p> Sensitive<'p> {
         start: &Start,
         near: &Start,
         rows: &[Row],
-    ) -> Result<(Sensitivities, [Read; 2]), Error> {
-        let fine = self.read(cycle, start, rows, FINE.1)?;
+    ) -> Result<(Sensitivities, Both), Error> {
+        let vanishes = cycle.vanishes();
+        let fine = self.read(cycle, start, rows, FINE.1, vanishes)?;
+        // The finer flow has decided what vanishes.
         let coarse = if cycle.is_closed_form() {
             // Another tolerance changes nothing: what is left are the nodes.
-            self.read(cycle, start, rows, COARSE.1)?
+            self.read(cycle, start, rows, COARSE.1, 0.0)
         } else {
-            let mut own = self.cycle(COARSE.0)?;
             let mut near = near.clone();
-            self.settle(&mut own, &mut near)?;
-            self.read(&mut own, &near, rows, COARSE.1)?
+            self.cycle(COARSE.0).and_then(|mut own| {
+                self.settle(&mut own, &mut near)?;
+                self.read(&mut own, &near, rows, COARSE.1, 0.0)
+            })
         };
+        let coarse = unless_cancelled(coarse)?;
         let rounding = ROUNDINGS * f64::EPSILON / fine.condition;
         let mut told = self.told(fine.condition);
-        for (row, (fine, coarse)) in rows.iter().zip(fine.slopes.iter().zip(&coarse.slopes)) {
+        for (index, (row, fine)) in rows.iter().zip(&fine.slopes).enumerate() {
+            let coarse = coarse.as_ref().map(|coarse| &coarse.slopes[index]);
             told.add(row, fine.value, apart(fine, coarse, rounding));
         }
-        Ok((told, [fine, coarse]))
+        Ok((told, Both { fine, coarse }))
     }
 
     /// And multipliers.
@@ -229,11 +258,13 @@ impl<'p> Sensitive<'p> {
         &self,
         cycle: &mut Cycle,
         start: &Start,
-        [fine, coarse]: &[Read; 2],
+        Both { fine, coarse }: &Both,
         told: &mut Sensitivities,
     ) -> Result<(), Error> {
-        let both = fine.along.iter().zip(&coarse.along);
-        let directions: Vec<[&Along; 2]> = both.map(|(fine, coarse)| [fine, coarse]).collect();
+        let along = fine.along.iter().enumerate();
+        let directions: Vec<(&Along, Option<&Along>)> = along
+            .map(|(index, fine)| (fine, coarse.as_ref().map(|coarse| &coarse.along[index])))
+            .collect();
         let (states, variables) = (&start.states, &self.variables);
         let crossed = fine.crossed.clone();
         let centre = Centre::known(cycle, states, variables, &fine.evaluated, crossed);
@@ -273,20 +304,21 @@ impl<'p> Sensitive<'p> {
         along.collect()
     }
 
-    /// What is read off an orbit, by every variable at a fixed value of all others.
+    /// What is read off an orbit, by every variable at a fixed value of all others; a harmonic vanishes below a part of the effective value.
     fn read(
         &self,
         cycle: &mut Cycle,
         start: &Start,
         rows: &[Row],
         nodes: usize,
+        vanishes: f64,
     ) -> Result<Read, Error> {
         let (slopes, places) = self.looked_at(cycle, start, rows, nodes)?;
         let evaluated = cycle.evaluate(&start.states, &self.variables, &places.stops)?;
         let along = self.directions(&evaluated)?;
         let condition = condition(&evaluated.jacobian)?;
         let reader = Reader::new(&places, &slopes, &evaluated, &self.variables, &along, cycle);
-        let slopes = self.rows_of(&reader, &slopes, rows, along.len());
+        let slopes = self.rows_of(&reader, &slopes, rows, vanishes);
         let arcs = places.scan.arcs.into_iter();
         Ok(Read {
             slopes,
@@ -305,12 +337,13 @@ impl<'p> Sensitive<'p> {
         rows: &[Row],
         nodes: usize,
         along: &[Along],
+        vanishes: f64,
     ) -> Result<Vec<Slope>, Error> {
         cycle.set(self.varied, start.value)?;
         let (slopes, places) = self.looked_at(cycle, start, rows, nodes)?;
         let evaluated = cycle.evaluate(&start.states, &self.variables, &places.stops)?;
         let reader = Reader::new(&places, &slopes, &evaluated, &self.variables, along, cycle);
-        Ok(self.rows_of(&reader, &slopes, rows, along.len()))
+        Ok(self.rows_of(&reader, &slopes, rows, vanishes))
     }
 
     /// The signals of rows, and where they are looked at.
@@ -338,9 +371,10 @@ impl<'p> Sensitive<'p> {
         reader: &Reader<'_>,
         slopes: &Slopes,
         rows: &[Row],
-        directions: usize,
+        vanishes: f64,
     ) -> Vec<Slope> {
         let moments = reader.moments();
+        let directions = reader.directions.len();
         let measured = rows.iter().map(|row| {
             let none = || Slope {
                 value: f64::NAN,
@@ -351,7 +385,7 @@ impl<'p> Sensitive<'p> {
                 return reader.on_pieces(contact, pieces)[piece - 1].clone();
             }
             let signal = slopes.position(row.asked);
-            let measured = signal.and_then(|signal| moments[signal].measure(row.measure));
+            let measured = signal.and_then(|signal| moments[signal].measure(row.measure, vanishes));
             measured.unwrap_or_else(none)
         });
         measured.collect()
@@ -375,13 +409,15 @@ impl Sensitivities {
     }
 }
 
-/// Derivatives by two flows: the fine ones, with errors told by the coarse ones.
-pub(super) fn apart(fine: &Slope, coarse: &Slope, rounding: f64) -> Vec<Derivative> {
+/// Derivatives by two flows: the fine ones, with errors told by the coarse ones, if there are any.
+pub(super) fn apart(fine: &Slope, coarse: Option<&Slope>, rounding: f64) -> Vec<Derivative> {
     let largest = fine.by.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    let both = fine.by.iter().zip(&coarse.by);
-    let by = both.map(|(&a, &b)| Derivative {
-        value: a,
-        error: (a - b).abs() + rounding * (a.abs() + f64::EPSILON * largest),
+    let by = fine.by.iter().enumerate().map(|(index, &value)| {
+        let apart = coarse.map_or(f64::INFINITY, |coarse| (value - coarse.by[index]).abs());
+        Derivative {
+            value,
+            error: finite(apart + rounding * (value.abs() + f64::EPSILON * largest)),
+        }
     });
     by.collect()
 }

@@ -35,7 +35,7 @@ pub(super) struct Reader<'r> {
     pub(super) evaluated: &'r Evaluated,
     /// How the coefficients move along each direction.
     by: Vec<By>,
-    directions: &'r [Along],
+    pub(super) directions: &'r [Along],
     order: usize,
     /// How each switch moves along each direction.
     shifts: Vec<Vec<f64>>,

@@ -152,7 +152,9 @@ impl Scan {
         match self.arcs.last_mut() {
             Some(arc)
                 if arc.segment == segment
-                    && slopes.pieces(middle, &room.state).eq(arc.pieces.iter().copied()) =>
+                    && slopes
+                        .pieces(middle, &room.state)
+                        .eq(arc.pieces.iter().copied()) =>
             {
                 arc.to = to;
             }

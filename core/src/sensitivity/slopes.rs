@@ -131,7 +131,9 @@ fn wave(wave: Wave, phase: f64) -> [f64; 3] {
 /// A matrix times a vector.
 fn times(matrix: &DMatrix<f64>, vector: &[f64], out: &mut [f64]) {
     for (row, out) in out.iter_mut().enumerate() {
-        *out = (0..vector.len()).map(|j| matrix[(row, j)] * vector[j]).sum();
+        *out = (0..vector.len())
+            .map(|j| matrix[(row, j)] * vector[j])
+            .sum();
     }
 }
 
@@ -311,10 +313,13 @@ impl Slopes {
         phase: f64,
         state: &'p [f64],
     ) -> impl Iterator<Item = usize> + 'p {
-        self.contacts.iter().enumerate().map(move |(index, contact)| {
-            let gap = self.gap(index, phase, state)[0];
-            contact.levels.iter().filter(|&&level| gap > level).count()
-        })
+        self.contacts
+            .iter()
+            .enumerate()
+            .map(move |(index, contact)| {
+                let gap = self.gap(index, phase, state)[0];
+                contact.levels.iter().filter(|&&level| gap > level).count()
+            })
     }
 
     /// (1)

@@ -19,8 +19,8 @@ pub(crate) struct Centred {
     parameters: Vec<f64>,
     omega: f64,
     centre: Centre,
-    /// The same for another variable, by which derivatives are asked for.
-    beside: Option<Centre>,
+    /// The same for other variables, by which derivatives have been asked for at the present values.
+    beside: Vec<Centre>,
     room: Room,
 }
 
@@ -43,7 +43,7 @@ pub(crate) fn centred(
         omega,
         room: centre.room(),
         centre,
-        beside: None,
+        beside: Vec::new(),
     })
 }
 
@@ -82,12 +82,13 @@ impl Centred {
 
     /// Adds how a state changes with a variable by the centre alone; nothing where there is none beside the value.
     fn add_slope(&mut self, variable: Variable, phase: f64, state: &[f64], derivative: &mut [f64]) {
-        let is_of = |centre: &Centre| centre.variable() == variable;
-        if !is_of(&self.centre) && !self.beside.as_ref().is_some_and(is_of) {
-            self.beside = self.at(variable, self.place(variable).value());
+        let is_of = |centre: &&Centre| centre.variable() == variable;
+        if !is_of(&&self.centre) && !self.beside.iter().any(|centre| is_of(&centre)) {
+            self.beside
+                .extend(self.at(variable, self.place(variable).value()));
         }
-        let known = [Some(&self.centre), self.beside.as_ref()];
-        if let Some(centre) = known.into_iter().flatten().find(|centre| is_of(centre)) {
+        let mut known = std::iter::once(&self.centre).chain(&self.beside);
+        if let Some(centre) = known.find(is_of) {
             centre.add_slope(phase, state, derivative, &mut self.room);
         }
     }
@@ -117,7 +118,7 @@ impl Flow for Centred {
             Variable::Parameter(index) => self.parameters[index] = value,
         }
         self.centre = centre;
-        self.beside = None;
+        self.beside.clear();
         Ok(())
     }
 

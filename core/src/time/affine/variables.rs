@@ -67,7 +67,11 @@ impl Affine {
     }
 
     /// Moves a part of a tangent by the flow whose tables are by its variable.
-    fn with<T>(&mut self, part: &mut Part, advance: impl FnOnce(&mut Self, &mut Tangent) -> T) -> T {
+    fn with<T>(
+        &mut self,
+        part: &mut Part,
+        advance: impl FnOnce(&mut Self, &mut Tangent) -> T,
+    ) -> T {
         let variable = part.tangent.by.first().copied();
         let Some(variable) = variable.filter(|_| part.first > 0) else {
             return advance(self, &mut part.tangent);
