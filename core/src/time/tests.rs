@@ -316,3 +316,83 @@ fn a_cancelled_motion_stops_where_it_is() {
         }
     }
 }
+
+/// Columns by several variables at once are those by each of them, at every stop between too, and both flows say the same.
+#[test]
+fn several_variables_move_as_each_of_them() {
+    let all = [
+        Variable::Omega,
+        Variable::Parameter(0),
+        Variable::Parameter(1),
+        Variable::Parameter(2),
+    ];
+    let (ends, stops) = ([0.3, 0.3 + 1.2 * TAU], [0.3, 1.1, 2.5, 4.0, 7.7]);
+    let mut ways: Vec<Vec<f64>> = Vec::new();
+    for mut flow in flows() {
+        let mut shown = |by: &[Variable]| {
+            let (mut state, mut tangent) = ([0.2, 0.7], Tangent::of_state(1, by.to_vec()));
+            let mut seen = Vec::new();
+            let mut show = |number: usize, state: &[f64], columns: &[f64]| {
+                assert_eq!(number, seen.len());
+                seen.push([state, columns].concat());
+            };
+            flow.advance_by(ends, &stops, &mut state, &mut tangent, &mut show)
+                .unwrap();
+            assert_eq!(seen.len(), stops.len());
+            seen.push([&state, &tangent.columns[..]].concat());
+            seen
+        };
+        let together = shown(&all);
+        for (index, &variable) in all.iter().enumerate() {
+            for (alone, together) in shown(&[variable]).iter().zip(&together) {
+                // The state with its two homogeneous columns, and then one of two entries.
+                let own = &together[6 + 2 * index..][..2];
+                let pairs = alone.iter().zip(together[..6].iter().chain(own));
+                for (a, b) in pairs {
+                    assert!(
+                        (a - b).abs() < 1e-11 * a.abs().max(1.0),
+                        "{variable:?} {a} {b}"
+                    );
+                }
+            }
+        }
+        ways.push(together.concat());
+    }
+    for (a, b) in ways[0].iter().zip(&ways[1]) {
+        assert!((a - b).abs() < 1e-9 * a.abs().max(1.0), "{a} {b}");
+    }
+}
+
+/// What a flow knows between its steps is what is there when it is moved from stop to stop, forwards and backwards.
+#[test]
+fn stops_are_shown_as_ends_are() {
+    let by = [Variable::Omega, Variable::Parameter(1)];
+    for ends in [[0.3, 6.1], [6.1, 0.3]] {
+        // One is before the first end, and one beyond the last.
+        let mut stops = [0.1, 0.9, 2.0, 5.0, 9.0];
+        if ends[0] > ends[1] {
+            stops.reverse();
+        }
+        for mut flow in flows() {
+            let start = [0.2, 0.7];
+            let mut shown = [Vec::new(), Vec::new()];
+            let [known, moved] = &mut shown;
+            let (mut state, mut tangent) = (start, Tangent::of_state(1, by));
+            let mut show = |_: usize, state: &[f64], columns: &[f64]| {
+                known.extend([state, columns].concat());
+            };
+            flow.advance_by(ends, &stops, &mut state, &mut tangent, &mut show)
+                .unwrap();
+            let (mut state, mut tangent) = (start, Tangent::of_state(1, by));
+            let mut show = |_: usize, state: &[f64], columns: &[f64]| {
+                moved.extend([state, columns].concat());
+            };
+            let flow = flow.as_mut();
+            from_stop_to_stop(flow, ends, &stops, &mut state, &mut tangent, &mut show).unwrap();
+            assert_eq!(shown[0].len(), 10 * stops.len());
+            for (a, b) in shown[0].iter().zip(&shown[1]) {
+                assert!((a - b).abs() < 1e-10 * a.abs().max(1.0), "{ends:?} {a} {b}");
+            }
+        }
+    }
+}

@@ -43,7 +43,41 @@ impl Parser<'_> {
             };
             parameter.default = Some((value, start.to(self.tokens.before())));
         }
-        self.range(parameter)
+        self.range(parameter)?;
+        if self.tokens.is("=") {
+            return Err(self.default_after_range(parameter));
+        }
+        Ok(())
+    }
+
+    /// What is said of a default that stands behind the range: both in their order.
+    fn default_after_range(&mut self, parameter: &Parameter) -> syn::Error {
+        let place = self.tokens.here();
+        self.tokens.next();
+        let written = |limit: &Option<Limit>| limit.as_ref().map(|limit| limit.value.to_string());
+        let default = written(&self.limit(true).ok().flatten());
+        let default = default.unwrap_or_else(|| "1".to_owned());
+        let is_open = |limit: &Option<Limit>| limit.as_ref().is_some_and(|limit| !limit.included);
+        let [low, high] = [&parameter.minimum, &parameter.maximum].map(written);
+        let range = match (low, high) {
+            (Some(low), None) if is_open(&parameter.minimum) => format!("> {low}"),
+            (Some(low), None) => format!(">= {low}"),
+            (None, Some(high)) if is_open(&parameter.maximum) => format!("< {high}"),
+            (None, Some(high)) => format!("<= {high}"),
+            (low, high) => {
+                let dots = if is_open(&parameter.maximum) {
+                    ".."
+                } else {
+                    "..="
+                };
+                let ends = [low, high].map(Option::unwrap_or_default);
+                format!("in {}{dots}{}", ends[0], ends[1])
+            }
+        };
+        let name = &parameter.name;
+        place.fault(format!(
+            "the default stands before the range: write `{name} = {default} {range}`"
+        ))
     }
 
     /// `(x, y[8], z: m)`, at least one.

@@ -58,8 +58,7 @@ fn assert_near(
     noise: f64,
 ) {
     let apart = (derivative.value - expected).abs();
-    let allowed =
-        noise + (1e-6 * expected.abs().max(1e-3 * scale)).max(2.0 * derivative.error + error);
+    let allowed = noise + (1e-6 * expected.abs().max(1e-3 * scale)).max(derivative.error + error);
     println!(
         "{what}: {} against {expected} ({error:.0e}), apart {apart:.1e}, stated {:.1e}",
         derivative.value, derivative.error
