@@ -331,6 +331,24 @@ impl Search<'_, '_> {
         self.promised <= HARDLY * self.least / degrees.max(1) as f64
     }
 
+    /// Those of some unknowns that no end of their range holds: by the gradient they would not go beyond one.
+    fn free(
+        &self,
+        able: &[usize],
+        unknowns: &[f64],
+        matrix: &DMatrix<f64>,
+        residuals: &[f64],
+    ) -> Vec<usize> {
+        let is_free = |&index: &usize| {
+            let column = matrix.column(index);
+            let gradient: f64 = column.iter().zip(residuals).map(|(a, r)| a * r).sum();
+            let [low, high] = self.axes[able[index]].limits;
+            let value = unknowns[able[index]];
+            !(value <= low && gradient > 0.0 || value >= high && gradient < 0.0)
+        };
+        (0..able.len()).filter(is_free).collect()
+    }
+
     fn unscaled(&self, at: &[f64]) -> Vec<f64> {
         let values = self.axes.iter().zip(at).map(|(axis, at)| axis.value(*at));
         values.collect()
@@ -426,20 +444,13 @@ impl MPFitter for Search<'_, '_> {
         let sizes = (0..jacobian.ncols()).map(|j| jacobian.column(j).norm() * slope(j).abs());
         let sizes: Vec<f64> = sizes.collect();
         let largest = sizes.iter().fold(0.0, |m: f64, &size| m.max(size));
-        let moves = |j: &usize| {
-            let gradient: f64 = (0..counted.len())
-                .map(|i| jacobian[(i, *j)] * factors[i] * counted[i])
-                .sum();
-            let [low, high] = self.axes[*j].limits;
-            let is_held =
-                (unknowns[*j] == low && gradient > 0.0) || (unknowns[*j] == high && gradient < 0.0);
-            sizes[*j] > WITHOUT * largest && !is_held
-        };
-        let free: Vec<usize> = (0..jacobian.ncols()).filter(moves).collect();
-        let matrix = DMatrix::from_fn(counted.len(), free.len(), |i, j| {
-            jacobian[(i, free[j])] * factors[i] * slope(free[j])
+        let moves = |j: &usize| sizes[*j] > WITHOUT * largest;
+        let able: Vec<usize> = (0..jacobian.ncols()).filter(moves).collect();
+        let matrix = DMatrix::from_fn(counted.len(), able.len(), |i, j| {
+            jacobian[(i, able[j])] * factors[i] * slope(able[j])
         });
-        self.promised = promised(matrix, &counted);
+        let free = self.free(&able, &unknowns, &matrix, &counted);
+        self.promised = promised(matrix.select_columns(&free), &counted);
         for (j, column) in columns.iter_mut().enumerate() {
             let slope = if sizes[j] > WITHOUT * largest {
                 slope(j)

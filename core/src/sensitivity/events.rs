@@ -35,26 +35,18 @@ impl Sensitive<'_> {
         let mut cycle = self.cycle(FINE.0)?;
         let start = self.start(&mut cycle)?;
         let crosses = Crosses::at(event.kind, self.point.orbit.parts);
-        let by_both = |cycle: &mut Cycle, find: &Find<'_>| -> Result<Found, Error> {
-            let fine = find(cycle, &start)?;
-            let beside = self
-                .cycle(BESIDE.0)
-                .and_then(|mut own| Ok(find(&mut own, &fine.start())?));
-            Ok(Found {
-                beside: unless_cancelled(beside)?,
-                fine,
-            })
-        };
         let both = match (event.kind, crosses) {
-            (_, Some(crosses)) => by_both(&mut cycle, &|cycle, start| {
+            (_, Some(crosses)) => self.by_both(&mut cycle, &start, &|cycle, start| {
                 critical::crossing(cycle, start.clone(), crosses, &others)
             })?,
-            (EventKind::Fold, _) => by_both(&mut cycle, &|cycle, start| {
+            (EventKind::Fold, _) => self.by_both(&mut cycle, &start, &|cycle, start| {
                 place::fold(cycle, &start.states, start.value, &others)
             })?,
-            (EventKind::Grazing { .. }, _) => by_both(&mut cycle, &|cycle, start| {
-                place::grazing(cycle, self.system(), &start.states, start.value, &others)
-            })?,
+            (EventKind::Grazing { .. }, _) => {
+                self.by_both(&mut cycle, &start, &|cycle, start| {
+                    place::grazing(cycle, self.system(), &start.states, start.value, &others)
+                })?
+            }
             (kind, _) => return Err(SensitivityError::Kind { kind }.into()),
         };
         let place = self.placed(&both);
@@ -90,6 +82,18 @@ impl Sensitive<'_> {
             _ => self.add_at_event(&mut cycle, &both, rows, multipliers, &mut told)?,
         }
         Ok(told)
+    }
+
+    /// An event from a start on by two flows.
+    fn by_both(&self, cycle: &mut Cycle, start: &Start, find: &Find<'_>) -> Result<Found, Error> {
+        let fine = find(cycle, start)?;
+        let beside = self
+            .cycle(BESIDE.0)
+            .and_then(|mut own| Ok(find(&mut own, &fine.start())?));
+        Ok(Found {
+            beside: unless_cancelled(beside)?,
+            fine,
+        })
     }
 
     /// Derivatives of a place by all variables, as two flows have it: none by what is varied.

@@ -275,7 +275,9 @@ impl<'r> Reader<'r> {
             }
         }
         let whole = std::f64::consts::TAU * self.period as f64;
-        on.iter_mut().for_each(|on| on.scale(1.0 / whole));
+        for part in &mut on {
+            part.scale(1.0 / whole);
+        }
         on
     }
 }
