@@ -7,7 +7,6 @@
 //! Source: Moré (1978), Lecture Notes in Mathematics 630, 105; ranges as in MPFIT, Markwardt (2009), ASP Conference Series 411, 251; (1) as
 //! in Huber (1964), Annals of Mathematical Statistics 35, 73.
 
-use nalgebra::DMatrix;
 use rmpfit::{MPConfig, MPError, MPFitter, MPMaxFev, MPPar, MPResult, MPSide, MPSuccess};
 
 use crate::fit::Loss;
@@ -32,8 +31,6 @@ const GAINED: f64 = 1e-3;
 /// error, are the last: what is measured at the end of a branch makes the sum of squares as steep as a wall, along which steps are short.
 const HARDLY: f64 = 2e-2;
 const IDLE: usize = 2;
-/// So many are the last even if the linearisation promises more, beside such a wall: then nothing has converged.
-const LONGER: usize = 5;
 /// A trial is hopeless, and not computed to the end, where distances from its curve have so many times the sum of squares of those of the best.
 const HOPELESS: f64 = 4.0;
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -139,26 +136,6 @@ pub(crate) fn square(residuals: &[f64]) -> f64 {
     residuals.iter().map(|residual| residual * residual).sum()
 }
 
-/// By how much a step of Gauss and Newton would make the sum of squares less, were residuals linear: the square of their part in the range of the
-/// derivatives.
-fn promised(matrix: DMatrix<f64>, residuals: &[f64]) -> f64 {
-    if matrix.ncols() == 0 {
-        return 0.0;
-    }
-    let decomposed = matrix.svd(true, false);
-    let Some(directions) = decomposed.u else {
-        return f64::INFINITY;
-    };
-    let largest = decomposed.singular_values.max();
-    let both = directions.column_iter().zip(&decomposed.singular_values);
-    let told = both.filter(|(_, size)| **size > WITHOUT * largest);
-    told.map(|(direction, _)| {
-        let along: f64 = direction.iter().zip(residuals).map(|(u, r)| u * r).sum();
-        along * along
-    })
-    .sum()
-}
-
 /// Least squares from a trial on.
 pub(crate) fn minimise(
     problem: &Problem,
@@ -199,7 +176,6 @@ pub(crate) fn minimise(
         last: None,
         before: f64::INFINITY,
         idle: 0,
-        promised: f64::INFINITY,
         axes,
         problem,
         scale,
@@ -215,11 +191,7 @@ pub(crate) fn minimise(
             .collect();
         let status = search.mpfit(&mut at);
         let is_idle = search.idle >= IDLE;
-        converged = if is_idle {
-            search.promises_little()
-        } else {
-            status.is_ok_and(|status| status.success != MPSuccess::MaxIter)
-        };
+        converged = is_idle || status.is_ok_and(|status| status.success != MPSuccess::MaxIter);
         (search.before, search.idle) = (f64::INFINITY, 0);
         if !converged || search.least > (1.0 - GAINED) * before {
             break;
@@ -301,8 +273,6 @@ struct Search<'s, 't> {
     /// The least sum before the last iteration, and how many in a row have hardly gained.
     before: f64,
     idle: usize,
-    /// By how much the last linearisation would make the sum of squares less.
-    promised: f64,
     trials: &'s mut Trials<'t>,
 }
 
@@ -322,31 +292,7 @@ impl Search<'_, '_> {
             self.idle = 0;
         }
         self.before = self.least;
-        self.idle >= IDLE && (self.promises_little() || self.idle >= LONGER)
-    }
-
-    /// Whether the last linearisation at the best place promises as little as the last iterations gained: else they were idle for another reason.
-    fn promises_little(&self) -> bool {
-        let degrees = self.best.residuals.len().saturating_sub(self.axes.len());
-        self.promised <= HARDLY * self.least / degrees.max(1) as f64
-    }
-
-    /// Those of some unknowns that no end of their range holds: by the gradient they would not go beyond one.
-    fn free(
-        &self,
-        able: &[usize],
-        unknowns: &[f64],
-        matrix: &DMatrix<f64>,
-        residuals: &[f64],
-    ) -> Vec<usize> {
-        let is_free = |&index: &usize| {
-            let column = matrix.column(index);
-            let gradient: f64 = column.iter().zip(residuals).map(|(a, r)| a * r).sum();
-            let [low, high] = self.axes[able[index]].limits;
-            let value = unknowns[able[index]];
-            !(value <= low && gradient > 0.0 || value >= high && gradient < 0.0)
-        };
-        (0..able.len()).filter(is_free).collect()
+        self.idle >= IDLE
     }
 
     fn unscaled(&self, at: &[f64]) -> Vec<f64> {
@@ -444,13 +390,6 @@ impl MPFitter for Search<'_, '_> {
         let sizes = (0..jacobian.ncols()).map(|j| jacobian.column(j).norm() * slope(j).abs());
         let sizes: Vec<f64> = sizes.collect();
         let largest = sizes.iter().fold(0.0, |m: f64, &size| m.max(size));
-        let moves = |j: &usize| sizes[*j] > WITHOUT * largest;
-        let able: Vec<usize> = (0..jacobian.ncols()).filter(moves).collect();
-        let matrix = DMatrix::from_fn(counted.len(), able.len(), |i, j| {
-            jacobian[(i, able[j])] * factors[i] * slope(able[j])
-        });
-        let free = self.free(&able, &unknowns, &matrix, &counted);
-        self.promised = promised(matrix.select_columns(&free), &counted);
         for (j, column) in columns.iter_mut().enumerate() {
             let slope = if sizes[j] > WITHOUT * largest {
                 slope(j)
