@@ -3,8 +3,10 @@
 use std::time::Instant;
 
 use super::equations::Equations;
+use super::fits::Fits;
 use super::gaps::Gaps;
-use super::method::ContactBranch;
+use super::guess::Guess;
+use super::method::{ContactBranch, REFUSALS};
 use super::plan::{Frame, Plan};
 use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
 use super::regular::Compared;
@@ -14,7 +16,6 @@ use crate::branches::branch::Branch;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::observed::Motion;
-use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
@@ -34,6 +35,21 @@ const TRIED: [usize; 3] = [FIRST, 5, 7];
 /// Parts of its size that an orbit differs by from one that comes back earlier, where it was found to six digits.
 const GUESSED: f64 = 1e-5;
 
+/// How a first orbit is solved for.
+const AT_START: NewtonOptions = NewtonOptions {
+    tolerance: 1e-10,
+    iterations: 40,
+    damped: true,
+};
+
+/// Where a first orbit is looked for.
+pub(crate) struct Guesses<'g> {
+    /// An orbit that is cheap to have.
+    pub(crate) first: &'g Point,
+    /// The orbit by another method, for where that leads nowhere.
+    pub(crate) better: &'g mut dyn FnMut() -> Result<Point, Error>,
+}
+
 /// A branch, and what it goes on from, where it was interrupted.
 pub(crate) struct Followed {
     pub(crate) branch: Branch,
@@ -52,14 +68,12 @@ struct First {
 ///
 /// # Errors
 /// If none is found.
-pub(crate) fn orbit(problem: &ContactProblem, guess: &Point, value: f64) -> Result<Point, Error> {
-    let First {
-        equations,
-        u,
-        frame,
-        resolution,
-    } = first(problem, guess, value)?;
-    let mut run = Run::new(problem, frame, resolution, equations);
+pub(crate) fn orbit(
+    problem: &ContactProblem,
+    guesses: Guesses<'_>,
+    value: f64,
+) -> Result<Point, Error> {
+    let (mut run, u) = begun(problem, guesses, value)?;
     let newton = Newton::new(&run.equations);
     let at = CurvePoint {
         scale: solve::scale_at(&newton, &u),
@@ -84,19 +98,13 @@ fn lost(value: f64) -> OrbitError {
 /// If there is no first orbit.
 pub(crate) fn branch(
     problem: &ContactProblem,
-    guess: &Point,
+    guesses: Guesses<'_>,
     [from, to]: [f64; 2],
     visit: See<'_>,
 ) -> Result<Followed, Error> {
     let started = Instant::now();
-    let First {
-        equations,
-        u,
-        frame,
-        resolution,
-    } = first(problem, guess, from)?;
+    let (mut run, u) = begun(problem, guesses, from)?;
     let options = options(problem, from, to);
-    let mut run = Run::new(problem, frame, resolution, equations);
     let mut branch = ContactBranch::new(&mut run, visit);
     let outcome = engine::run(&mut branch, Start::Near(u), options);
     ended(problem, run, outcome, options.from, started)
@@ -175,8 +183,51 @@ fn ended(
     Ok(Followed { branch, rest })
 }
 
+/// A run whose equations fit a first orbit, and its unknowns.
+fn begun<'p>(
+    problem: &'p ContactProblem,
+    guesses: Guesses<'_>,
+    value: f64,
+) -> Result<(Run<'p>, Vec<f64>), Error> {
+    let fitting = |guess: &Guess<'_>| {
+        let first = first(problem, guess, value)?;
+        let found = fitting(problem, first);
+        found.ok_or_else(|| Error::from(lost(value)))
+    };
+    fitting(&Guess::by_series(guesses.first)).or_else(|reason| {
+        let Ok(better) = (guesses.better)() else {
+            return Err(reason);
+        };
+        fitting(&Guess::by_motion(problem, &better)?)
+    })
+}
+
+/// Goes over to equations that fit a first orbit. A guess may have had other switches. `None` where none are found.
+fn fitting(problem: &ContactProblem, first: First) -> Option<(Run<'_>, Vec<f64>)> {
+    let First {
+        equations,
+        mut u,
+        frame,
+        resolution,
+    } = first;
+    let mut run = Run::new(problem, frame, resolution, equations);
+    for _ in 0..REFUSALS {
+        run.equations.compute(&u, false);
+        if run.equations.failed {
+            return None;
+        }
+        if run.fits(&u) != Fits::No {
+            return Some((run, u));
+        }
+        (run.equations, u) = run.replanned(&u)?;
+        let mut newton = Newton::new(&run.equations);
+        solve::at_value(&mut run.equations, &mut newton, &mut u, AT_START).ok()?;
+    }
+    None
+}
+
 /// A solution near an orbit that is given by its series. What comes back earlier is followed until then only.
-fn first(problem: &ContactProblem, guess: &Point, value: f64) -> Result<First, Error> {
+fn first(problem: &ContactProblem, guess: &Guess<'_>, value: f64) -> Result<First, Error> {
     let whole = Recurrence::whole(problem.asked.period);
     let seen = seen_in(problem, guess).filter(|seen| seen.period == whole.period);
     let seen = seen.and_then(|seen| first_like(problem, guess, value, &seen).ok());
@@ -195,34 +246,22 @@ fn first(problem: &ContactProblem, guess: &Point, value: f64) -> Result<First, E
 }
 
 /// How a guess comes back in less time than is asked for, as far as it tells.
-fn seen_in(problem: &ContactProblem, guess: &Point) -> Option<Recurrence> {
-    let orbit = &guess.orbit;
-    let rate = orbit.base * orbit.period as f64;
-    let at = |phase: f64, state: &mut [f64]| write_state(orbit, phase / rate, state);
+fn seen_in(problem: &ContactProblem, guess: &Guess<'_>) -> Option<Recurrence> {
+    let at = |phase: f64, state: &mut [f64]| guess.write(phase, state);
     let compared = Compared {
         begin: 0.0,
-        rate,
-        most: GUESSED * guess.size(),
-        coordinates: orbit.coordinates(),
+        rate: guess.rate(),
+        most: GUESSED * guess.point.size(),
+        coordinates: guess.point.orbit.coordinates(),
     };
     let whole = Recurrence::whole(problem.asked.period);
     compared.earlier(&at, &whole, &problem.asked.symmetries)
 }
 
-/// Writes positions and velocities at a time.
-fn write_state(orbit: &Orbit, time: f64, state: &mut [f64]) {
-    let coordinates = orbit.coordinates();
-    for i in 0..coordinates {
-        if let Some((x, v)) = orbit.state_at(i, time) {
-            (state[i], state[coordinates + i]) = (x, v);
-        }
-    }
-}
-
 /// A solution that comes back like this.
 fn first_like(
     problem: &ContactProblem,
-    guess: &Point,
+    guess: &Guess<'_>,
     value: f64,
     recurrence: &Recurrence,
 ) -> Result<First, OrbitError> {
@@ -241,20 +280,18 @@ fn first_like(
 
 fn first_with(
     problem: &ContactProblem,
-    guess: &Point,
+    guess: &Guess<'_>,
     value: f64,
     resolution: usize,
     recurrence: &Recurrence,
 ) -> Result<First, NewtonError> {
     let unusable = NewtonError::NotFinite { iterations: 0 };
     let values = problem.setting.values(value).ok_or(unusable)?;
-    let orbit: &Orbit = &guess.orbit;
-    let coordinates = orbit.coordinates();
+    let coordinates = guess.point.orbit.coordinates();
     // The orbit goes on at the pace of the value that is asked for.
-    let rate = orbit.base * orbit.period as f64;
-    let pace = values.base / rate;
+    let pace = values.base / guess.rate();
     let at = |phase: f64, state: &mut [f64]| {
-        write_state(orbit, phase / rate, state);
+        guess.write(phase, state);
         for v in &mut state[coordinates..] {
             *v *= pace;
         }
@@ -265,21 +302,17 @@ fn first_with(
         coordinates,
     };
     let plan = Plan::sampled(&gaps, recurrence);
-    let middles = guess.observed.motions.iter().map(Motion::middle);
+    let observed = &guess.point.observed;
+    let middles = observed.motions.iter().map(Motion::middle);
     let frame = Frame {
         reference: middles.chain(vec![0.0; coordinates]).collect(),
-        size: guess.size(),
+        size: guess.point.size(),
         resolution: RESOLUTIONS[resolution],
     };
     let planned = plan.equations(&problem.setting, value, &gaps, &frame);
     let (mut equations, mut u) = planned.ok_or(unusable)?;
     let mut newton = Newton::new(&equations);
-    let options = NewtonOptions {
-        tolerance: 1e-10,
-        iterations: 40,
-        damped: true,
-    };
-    solve::at_value(&mut equations, &mut newton, &mut u, options)?;
+    solve::at_value(&mut equations, &mut newton, &mut u, AT_START)?;
     Ok(First {
         equations,
         u,

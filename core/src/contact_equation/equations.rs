@@ -25,6 +25,8 @@
 //! M = S^-1 (E_y - E_w W^-1 W_y),    rows E of the end, W of switches; columns y of states, w of switches      (4)
 //! ```
 //!
+//! Intervals whose forces are affine have no `f`: (1) is then that of their [configuration](super::configuration).
+//!
 //! Source: the integral equation of the periodic contact force, Babitsky (1998), Theory of Vibro-Impact Systems and Applications,
 //! section 2.2, in causal form; collocation at Gauss nodes, Hairer, Norsett and Wanner (1993), section II.7.
 
@@ -32,6 +34,7 @@ use std::cell::OnceCell;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use super::configuration::Configuration;
 use super::eliminated::Eliminated;
 use super::extremes::Extremes;
 use super::integrals::add;
@@ -105,13 +108,20 @@ impl Setting {
         let (parameters, omega) = self.at(value);
         Values::new(self.system.as_ref(), &self.layout, &parameters, omega)
     }
+
+    /// The configurations of a skeleton at values; `None` where one has dependent eigenvectors.
+    fn configurations(&self, values: &Values, skeleton: &Skeleton) -> Option<Vec<Configuration>> {
+        let pieces = skeleton.configurations.iter();
+        let of = |pieces: &Vec<usize>| Configuration::new(self.system.as_ref(), values, pieces);
+        pieces.map(of).collect()
+    }
 }
 
 /// What was met on an interval, for whoever looks at the motion afterwards.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Passed {
     pub(super) phases: [f64; 2],
-    /// States less the steady response at its beginning.
+    /// States less the steady response at its beginning, in the pairs of its configuration.
     pub(super) free: Vec<f64>,
     /// What the forces do to the states, at the nodes and the end.
     pub(super) forced: Vec<f64>,
@@ -134,6 +144,8 @@ enum Of {
 pub(super) struct Equations {
     pub(super) setting: Setting,
     pub(super) values: Values,
+    /// Those of the skeleton.
+    pub(super) configurations: Vec<Configuration>,
     /// What is varied where `values` are, and where they were made.
     at: f64,
     pub(super) made: f64,
@@ -176,8 +188,10 @@ impl Equations {
         size: f64,
     ) -> Option<Self> {
         let values = setting.values(value)?;
+        let configurations = setting.configurations(&values, &skeleton)?;
         let mut equations = Self {
             values,
+            configurations,
             at: value,
             made: value,
             setting,
@@ -230,11 +244,18 @@ impl Equations {
         if self.setting.plain {
             let divisor = f64::from(self.setting.system.facts().divisor);
             self.values.set_omega(value, divisor);
-        } else {
-            match self.setting.values(value) {
-                Some(values) => self.values = values,
-                None => return false,
+            for of in &mut self.configurations {
+                of.values.set_base(self.values.base);
             }
+        } else {
+            let Some(values) = self.setting.values(value) else {
+                return false;
+            };
+            let configurations = self.setting.configurations(&values, &self.skeleton);
+            let Some(configurations) = configurations else {
+                return false;
+            };
+            (self.values, self.configurations) = (values, configurations);
         }
         self.at = value;
         true
@@ -263,11 +284,12 @@ impl Equations {
         if derivatives {
             self.chain.begin();
         }
-        let (values, skeleton) = (&self.values, &self.skeleton);
+        let skeleton = &self.skeleton;
         let omega = self.setting.at_omega(u[n]);
         let mut pass = super::pass::Pass {
             system: self.setting.system.as_ref(),
-            values,
+            values: &self.values,
+            configurations: &self.configurations,
             skeleton,
             u,
             omega: self.setting.plain.then_some(omega),

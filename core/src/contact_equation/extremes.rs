@@ -143,7 +143,7 @@ impl Samples {
         let passed = &motion.equations.passed[interval];
         let [from, to] = passed.phases;
         let of = &motion.equations.skeleton.intervals[interval];
-        let parts = (SAMPLES * motion.fastest() * (to - from)).max(FEWEST);
+        let parts = (SAMPLES * motion.fastest(interval) * (to - from)).max(FEWEST);
         let known = !of.active.is_empty() && parts * of.nodes.widest() <= 1.0;
         let order = motion.equations.skeleton.order;
         if known {

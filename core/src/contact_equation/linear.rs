@@ -32,6 +32,8 @@ pub(super) struct Linear {
     pub(super) input: DMatrix<f64>,
     /// `T^-1`
     pub(super) inverse: DMatrix<f64>,
+    /// The product of the largest entries of `T` and `T^-1` in balanced coordinates, where pairs are eigenvectors; else one.
+    pub(super) dependence: f64,
 }
 
 impl Linear {
@@ -51,6 +53,7 @@ impl Linear {
             velocities: row(0.0, 1.0),
             input: DMatrix::from_row_slice(2, 1, &[0.0, 1.0 / m]),
             inverse: DMatrix::identity(2, 2),
+            dependence: 1.0,
         })
     }
 
@@ -104,6 +107,7 @@ impl Linear {
             velocities,
             input,
             inverse,
+            dependence: 1.0,
         })
     }
 
@@ -146,7 +150,8 @@ impl Linear {
             return None;
         }
         let mut inverse = states.clone().try_inverse()?;
-        if inverse.amax() * states.amax() > 1.0 / DEPENDENT {
+        let dependence = inverse.amax() * states.amax();
+        if dependence > 1.0 / DEPENDENT {
             return None;
         }
         for (state, scale) in scales.iter().enumerate() {
@@ -160,6 +165,7 @@ impl Linear {
             velocities: states.rows(n, n).into_owned(),
             inverse,
             blocks,
+            dependence,
         })
     }
 

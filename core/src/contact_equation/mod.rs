@@ -1,10 +1,10 @@
 //! Periodic orbits by the contact equation: unknown are the forces at a few nodes of each stretch in contact, where stretches begin and
 //! end, and the state at one phase. Between contacts the system is linear, and its motion known in closed form.
 //!
-//! `linear` and `block` have the motion of the linear part, `nodes`, `grading` and `integrals` the integrals over a stretch, `skeleton`, `placement` and `place`
+//! `linear` and `block` have the motion of the linear part, `configuration` that with contacts whose forces are affine, `nodes`, `grading` and `integrals` the integrals over a stretch, `skeleton`, `placement` and `place`
 //! which pieces gaps are on and where the unknowns stand, `targets`, `pass`, `equations` and `eliminated` residuals and derivatives, `motion` and `extremes` the
 //! motion at any phase. `gaps`, `plan` and `transfer` tell which skeleton an orbit has, `fits` whether it still is right, `reading` what is
-//! read off an orbit, with its errors. `regular` whether it comes back earlier. `run`, `method`, `events` and `touches` are what the engine of branches asks for.
+//! read off an orbit, with its errors. `regular` whether it comes back earlier, `guess` where the first one is looked for. `run`, `method`, `events` and `touches` are what the engine of branches asks for.
 //!
 //! Laws are called in `pass`; what their forces do to the motion is integrated in `integrals`.
 //!
@@ -13,6 +13,7 @@
 
 mod block;
 pub(crate) mod compute;
+mod configuration;
 mod eliminated;
 mod equations;
 mod errors;
@@ -21,6 +22,7 @@ mod extremes;
 mod fits;
 mod gaps;
 mod grading;
+mod guess;
 mod integrals;
 mod linear;
 mod method;

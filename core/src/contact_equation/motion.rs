@@ -3,11 +3,12 @@
 use std::cell::RefCell;
 
 use super::block::{Block, times};
+use super::configuration::Configuration;
 use super::equations::{Equations, Passed};
 use super::extremes::Extremes;
 use super::nodes::{Nodes, points_for};
 use super::partway::Partway;
-use super::values::{Contact, Instant, pair};
+use super::values::{Contact, Instant, Values, pair};
 use crate::time;
 
 /// An extreme of a gap within an interval.
@@ -32,6 +33,8 @@ struct Room {
     rows: [Vec<f64>; 3],
     weights: Vec<f64>,
     steady: Vec<f64>,
+    /// States of a configuration.
+    own: Vec<f64>,
     partway: Partway,
 }
 
@@ -43,6 +46,7 @@ impl<'e> Motion<'e> {
             rows: std::array::from_fn(|_| states()),
             weights: Vec::new(),
             steady: states(),
+            own: states(),
             partway: Partway::default(),
         };
         Self {
@@ -95,11 +99,10 @@ impl<'e> Motion<'e> {
     /// Writes the states within an interval.
     fn write(&self, interval: usize, phase: f64, room: &mut Room) {
         let Equations {
-            values,
-            skeleton,
-            passed,
-            ..
+            skeleton, passed, ..
         } = self.equations;
+        let configuration = self.configuration(interval);
+        let values = self.values(interval);
         let (of, passed) = (&skeleton.intervals[interval], &passed[interval]);
         let [from, to] = passed.phases;
         let time = (phase - from) / values.base;
@@ -120,6 +123,23 @@ impl<'e> Motion<'e> {
             self.add_forced(of.nodes, passed, psi, room);
         }
         values.add_resonant(from, time, &mut room.states);
+        if let Some(of) = configuration {
+            of.give(&room.states, &mut room.own);
+            std::mem::swap(&mut room.states, &mut room.own);
+        }
+    }
+
+    /// What has the forces of an interval, where they are affine.
+    fn configuration(&self, interval: usize) -> Option<&'e Configuration> {
+        let of = &self.equations.skeleton.intervals[interval];
+        of.configuration
+            .map(|index| &self.equations.configurations[index])
+    }
+
+    /// The linear part on an interval.
+    fn values(&self, interval: usize) -> &'e Values {
+        let own = &self.equations.values;
+        self.configuration(interval).map_or(own, |of| &of.values)
     }
 
     /// Adds what the forces of an interval have done to the states up to a part of it. Of slow pairs the polynomial through what is known at the
@@ -239,9 +259,10 @@ impl<'e> Motion<'e> {
         self.equations.extremes.get_or_init(|| Extremes::of(self))
     }
 
-    /// Periods in a unit of phase of the fastest that the linear part and its load do.
-    pub(super) fn fastest(&self) -> f64 {
-        let values = &self.equations.values;
+    /// Periods in a unit of phase of the fastest that the linear part and its load do on an interval.
+    pub(super) fn fastest(&self, interval: usize) -> f64 {
+        let contacts = &self.equations.values.contacts;
+        let values = self.values(interval);
         let modes = values
             .linear
             .blocks
@@ -249,7 +270,7 @@ impl<'e> Motion<'e> {
             .map(|block| block.turns() / values.base);
         let waves = values.load.iter().map(|wave| wave.harmonic);
         // A gap whose direction moves has the sum of both.
-        let gaps = values.contacts.iter().map(Contact::harmonic);
+        let gaps = contacts.iter().map(Contact::harmonic);
         let moving = gaps.fold(0.0, f64::max);
         (moving + modes.chain(waves).fold(1.0, f64::max)) / std::f64::consts::TAU
     }

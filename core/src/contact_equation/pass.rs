@@ -1,6 +1,7 @@
 //! One pass over an orbit: the states from cut to cut, residuals, and derivatives by all unknowns.
 
 use super::block::row_times;
+use super::configuration::Configuration;
 use super::equations::Passed;
 use super::integrals::{Loaded, add};
 use super::place::Place;
@@ -20,6 +21,7 @@ const HARDLY: f64 = 1e-150;
 pub(super) struct Pass<'p> {
     pub(super) system: &'p dyn System,
     pub(super) values: &'p Values,
+    pub(super) configurations: &'p [Configuration],
     pub(super) skeleton: &'p Skeleton,
     pub(super) u: &'p [f64],
     /// The frequency, where it is varied and nothing but the time depends on it.
@@ -36,6 +38,8 @@ pub(super) struct Pass<'p> {
 struct Stretch<'i> {
     index: usize,
     interval: &'i Interval,
+    /// What has its forces, if it is not the linear part alone.
+    configuration: Option<&'i Configuration>,
     from: Place,
     to: Place,
     /// In units of time.
@@ -126,15 +130,27 @@ impl Pass<'_> {
         let stretch = Stretch {
             index,
             interval,
+            configuration: interval
+                .configuration
+                .map(|index| &self.configurations[index]),
             from,
             to,
             time,
         };
+        let values = stretch
+            .configuration
+            .map_or(self.values, |of| &of.values);
         passed.phases = [from.phase, to.phase];
         let [steady, by_phase, by_base] = &mut self.room.steady_from;
-        self.values
-            .write_steady(from.phase, steady, Some([by_phase, by_base]));
-        let free = self.room.y.iter().zip(&*steady);
+        values.write_steady(from.phase, steady, Some([by_phase, by_base]));
+        let begun = match stretch.configuration {
+            Some(of) => {
+                of.take(&self.room.y, &mut self.room.rows[0]);
+                &self.room.rows[0]
+            }
+            None => &self.room.y,
+        };
+        let free = begun.iter().zip(&*steady);
         passed.free.clear();
         passed.free.extend(free.map(|(y, steady)| y - steady));
         passed.forced.clear();
@@ -194,7 +210,9 @@ impl Pass<'_> {
         let [_, by_phase, by_base] = &room.steady_from;
         let whole = [1.0];
         let way = Way {
-            values: self.values,
+            values: stretch
+                .configuration
+                .map_or(self.values, |of| &of.values),
             phases: loaded.phases,
             time: loaded.time,
             psi: if active.is_empty() {
@@ -210,6 +228,11 @@ impl Pass<'_> {
         };
         room.targets.fill(&way);
         let targets = way.psi.len();
+        if let Some(of) = stretch.configuration {
+            self.end_of(of, stretch);
+            passed.states.extend_from_slice(&self.room.y);
+            return;
+        }
         self.pass_by(targets, !active.is_empty(), passed);
         for (place, active) in active.iter().enumerate() {
             self.outputs(stretch, place, active);
@@ -408,6 +431,48 @@ impl Pass<'_> {
                     room.integrals
                         .add_own(&loaded, r..r + 1, [unit_row, turned], target, driven);
                 }
+            }
+        }
+        self.pass_on(stretch);
+    }
+
+    /// The same where forces are in a configuration: states are taken over to it where the interval begins, and given back, so that
+    /// derivatives are `S E S^-1` with those `E` of its own states.
+    fn end_of(&mut self, of: &Configuration, stretch: &Stretch<'_>) {
+        let (order, columns) = (self.skeleton.order, self.columns());
+        let room = &mut *self.room;
+        room.targets.write(0, &mut room.rows[0]);
+        of.give(&room.rows[0], &mut room.y);
+        if !self.derivatives {
+            return;
+        }
+        for (r, block) in of.values.linear.blocks.iter().enumerate() {
+            let [c, k] = room.targets.kernel(0, r);
+            let d = block.deviation;
+            for i in 0..2 {
+                let row = &mut room.carried[(2 * r + i) * order..][..order];
+                for (j, entry) in row.iter_mut().enumerate() {
+                    let from = [0, 1].map(|l| of.from[(2 * r + l, j)]);
+                    *entry = c * from[i] + k * (d[i][0] * from[0] + d[i][1] * from[1]);
+                }
+            }
+        }
+        for state in 0..order {
+            let [carried, _] = self.chain.link_mut(stretch.index).state_mut(state);
+            carried.fill(0.0);
+            let mut slopes = [0.0; 3];
+            for (own, row) in room.carried.chunks_exact(order).enumerate() {
+                let factor = of.to[(state, own)];
+                add(carried, factor, row);
+                for (to, by) in slopes.iter_mut().zip(room.targets.slopes(0, own)) {
+                    *to += factor * by;
+                }
+            }
+            let direct = &mut room.by_next[state * columns..][..columns];
+            direct.fill(0.0);
+            stretch.add_slopes(slopes, direct);
+            if self.omega.is_some() {
+                direct[columns - 1] += slopes[2];
             }
         }
         self.pass_on(stretch);

@@ -145,8 +145,7 @@ impl Plan {
         let placed: Vec<Placed> = self.planned.iter().map(|planned| planned.placed).collect();
         let skeleton = Skeleton::new(
             setting.system.as_ref(),
-            &gaps.values.contacts,
-            gaps.values.order(),
+            gaps.values,
             Placement {
                 beginning: self.beginning.clone(),
                 placed,

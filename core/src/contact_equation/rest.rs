@@ -71,8 +71,7 @@ impl Rest {
         }
         let skeleton = Skeleton::new(
             problem.setting.system.as_ref(),
-            &values.contacts,
-            values.order(),
+            &values,
             self.placement.clone(),
         );
         let frame = Frame {

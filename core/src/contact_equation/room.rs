@@ -25,6 +25,8 @@ pub(super) struct Room {
     pub(super) forces: Vec<f64>,
     pub(super) by_gap: Vec<f64>,
     pub(super) by_rate: Vec<f64>,
+    /// Derivatives of the states of a configuration by those of the linear part.
+    pub(super) carried: Vec<f64>,
     /// Rows over the states.
     pub(super) rows: [Vec<f64>; 3],
     /// Per switch: gap less level and its slope by the phase, and their derivatives.
@@ -45,6 +47,11 @@ impl Room {
         let nodes = most(|interval| interval.nodes.count());
         let forces = most(Interval::forces);
         let states = || vec![0.0; order];
+        let carried = if skeleton.configurations.is_empty() {
+            0
+        } else {
+            order * order
+        };
         let switches = skeleton.switches.len();
         Self {
             y: states(),
@@ -61,6 +68,7 @@ impl Room {
             forces: vec![0.0; forces],
             by_gap: vec![0.0; forces],
             by_rate: vec![0.0; forces],
+            carried: vec![0.0; carried],
             rows: std::array::from_fn(|_| states()),
             at_switch: vec![[0.0; 2]; switches],
             switch_rows: vec![0.0; switches * columns],

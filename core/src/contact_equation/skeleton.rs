@@ -1,7 +1,8 @@
 //! Which pieces the gaps of an orbit are on, one after the other, and where the unknowns that tell it stand.
 //!
 //! The period is cut where a gap switches from one piece of its law to the next. What lies between two successive cuts is an *interval*: on
-//! each the forces of contacts whose piece has one are unknown at [nodes](super::nodes), and those of the others are zero.
+//! each the forces of contacts whose piece has one are unknown at [nodes](super::nodes), and those of the others are zero. Where they are
+//! affine, they are in a [configuration](super::configuration) of the linear part, and none is unknown.
 //!
 //! ```text
 //! u = [ states at the beginning | places of switches | forces at nodes, interval by interval | parameter ]     (1)
@@ -30,7 +31,8 @@ use super::grading::STEEPEST;
 use super::nodes::{COUNTS, Nodes};
 use super::place::{Opening, Place};
 use super::placement::{Placement, Switch, Told};
-use super::values::Contact;
+use super::configuration::Configuration;
+use super::values::{Contact, Values};
 use crate::branches::recurrence::Recurrence;
 use crate::law::{Law, Quantity, Variation};
 use crate::numeric::fourier::grading;
@@ -85,6 +87,8 @@ pub(super) struct Interval {
     /// Per contact.
     pub(super) pieces: Vec<usize>,
     pub(super) active: Vec<Active>,
+    /// The configuration that has the forces, where none is unknown although there are some.
+    pub(super) configuration: Option<usize>,
     pub(super) nodes: &'static Nodes,
     /// The switch where it ends.
     pub(super) ends: Option<usize>,
@@ -99,6 +103,11 @@ impl Interval {
     /// Place of the first of them among the unknowns.
     pub(super) fn first(&self) -> usize {
         self.active.first().map_or(0, |active| active.first)
+    }
+
+    /// No contact has a force on it.
+    fn is_free(&self) -> bool {
+        self.active.is_empty() && self.configuration.is_none()
     }
 
     /// Half of the way from its beginning to its end.
@@ -140,6 +149,8 @@ pub(super) struct Skeleton {
     /// How the way between two of them is told.
     openings: Vec<Opening>,
     pub(super) intervals: Vec<Interval>,
+    /// Pieces of the contacts in every configuration.
+    pub(super) configurations: Vec<Vec<usize>>,
     /// Number of forces.
     pub(super) forces: usize,
     pub(super) placement: Placement,
@@ -149,23 +160,24 @@ impl Skeleton {
     /// From the switches of an orbit, in the order of time from its beginning on.
     pub(super) fn new(
         system: &dyn System,
-        contacts: &[Contact],
-        order: usize,
+        values: &Values,
         placement: Placement,
     ) -> Self {
+        let contacts = &values.contacts;
         let Placement {
             beginning, placed, ..
         } = placement.clone();
         let mut skeleton = Self {
             begin: beginning.phase,
             length: beginning.length(),
-            order,
+            order: values.order(),
             switches: placed.iter().map(|placed| placed.switch).collect(),
             openings: placed
                 .iter()
                 .map(|placed| opening(system, contacts, &placed.switch))
                 .collect(),
             intervals: Vec::new(),
+            configurations: Vec::new(),
             forces: 0,
             placement,
         };
@@ -184,7 +196,7 @@ impl Skeleton {
                 pieces: &pieces,
                 ends,
             };
-            skeleton.add(system, contacts, &way);
+            skeleton.add(system, values, &way);
             if let Some(index) = ends {
                 let Switch {
                     contact,
@@ -293,13 +305,22 @@ impl Skeleton {
     }
 
     /// Adds what lies between two cuts, in as many panels as its length asks for.
-    fn add(&mut self, system: &dyn System, contacts: &[Contact], way: &Way<'_>) {
+    fn add(&mut self, system: &dyn System, values: &Values, way: &Way<'_>) {
+        let contacts = &values.contacts;
         let law = |contact: usize| system.law(contacts[contact].law);
         let has_force = |contact: &usize| {
             let facts = &law(*contact).facts().pieces[way.pieces[*contact]];
             facts.force != Variation::Zero
         };
-        let active: Vec<usize> = (0..contacts.len()).filter(has_force).collect();
+        let mut active: Vec<usize> = (0..contacts.len()).filter(has_force).collect();
+        let configuration = if active.is_empty() {
+            None
+        } else {
+            self.configuration(system, values, way.pieces)
+        };
+        if configuration.is_some() {
+            active.clear();
+        }
         let panels = if active.is_empty() {
             1
         } else {
@@ -343,10 +364,29 @@ impl Skeleton {
                 to: mark(panel + 1),
                 pieces: way.pieces.to_vec(),
                 active,
+                configuration,
                 nodes,
                 ends: way.ends.filter(|_| panel + 1 == panels),
             });
         }
+    }
+
+    /// The configuration with contacts on these pieces, if their forces are affine.
+    fn configuration(
+        &mut self,
+        system: &dyn System,
+        values: &Values,
+        pieces: &[usize],
+    ) -> Option<usize> {
+        let known = self.configurations.iter().position(|of| of == pieces);
+        let new = || {
+            let pays = Configuration::pays(self.order);
+            let of = pays.then(|| Configuration::new(system, values, pieces))?;
+            of.filter(Configuration::is_sound)?;
+            self.configurations.push(pieces.to_vec());
+            Some(self.configurations.len() - 1)
+        };
+        known.or_else(new)
     }
 
     /// The power of the grading at a cut, which makes the force's exponents there whole.
@@ -476,8 +516,7 @@ impl Skeleton {
             .find(|interval| interval.ends == Some(second))?;
         let told = self.openings[first];
         beyond
-            .active
-            .is_empty()
+            .is_free()
             .then_some((told, self.slot(first), self.slot(second)))
     }
 

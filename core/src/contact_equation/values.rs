@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::block::{Block, Pair, times};
 use super::linear::Linear;
-use crate::model::layout::{Layout, Term, constant};
+use crate::model::layout::{ContactLayout, Layout, Term, constant};
 use crate::system::{Part, System};
 
 /// A vector that moves with the phase, `sum_h a_h cos h tau + b_h sin h tau`.
@@ -121,6 +121,19 @@ pub(super) struct Contact {
     pub(super) rate: Moving,
     /// `delta`
     pub(super) offset: Moving,
+    /// Unless one of these moves.
+    pub(super) standing: Option<Standing>,
+}
+
+/// What of a contact does not move, over the coordinates.
+#[derive(Debug, Clone)]
+pub(super) struct Standing {
+    /// `e`
+    pub(super) force: DVector<f64>,
+    /// `d`
+    pub(super) gap: DVector<f64>,
+    /// `delta`
+    pub(super) offset: f64,
 }
 
 impl Contact {
@@ -206,6 +219,17 @@ pub(super) struct Wave {
 }
 
 impl Wave {
+    /// Of what it does to the states.
+    pub(super) fn new(harmonic: f64, input: &DVector<Complex<f64>>) -> Self {
+        let pairs = input.as_slice().as_chunks().0;
+        Self {
+            harmonic,
+            input: pairs.to_vec(),
+            steady: vec![[Complex::new(0.0, 0.0); 2]; 2 * pairs.len()],
+            resonant: Vec::new(),
+        }
+    }
+
     /// All pairs are in resonance with it.
     pub(super) fn is_resonant(&self) -> bool {
         2 * self.resonant.len() == self.steady.len()
@@ -249,6 +273,8 @@ pub(super) struct Values {
     pub(super) base: f64,
     pub(super) contacts: Vec<Contact>,
     pub(super) load: Vec<Wave>,
+    /// Mass, damping and stiffness of the linear part.
+    pub(super) matrices: [DMatrix<f64>; 3],
 }
 
 impl Values {
@@ -264,7 +290,8 @@ impl Values {
         system.coefficients(parameters, omega, &mut coefficients);
         let damping = constant(&layout.damping, &coefficients, n);
         let stiffness = constant(&layout.stiffness, &coefficients, n);
-        let linear = Linear::new(&layout.mass(&coefficients), &damping, &stiffness)?;
+        let mass = layout.mass(&coefficients);
+        let linear = Linear::new(&mass, &damping, &stiffness)?;
         let contacts = (0..layout.contacts.len())
             .map(|contact| self::contact(system, layout, &coefficients, &linear, contact))
             .collect();
@@ -274,6 +301,7 @@ impl Values {
             base: 0.0,
             contacts,
             load,
+            matrices: [mass, damping, stiffness],
         };
         values.set_omega(omega, f64::from(system.facts().divisor));
         Some(values)
@@ -281,7 +309,12 @@ impl Values {
 
     /// Goes over to another frequency, which no coefficient depends on.
     pub(super) fn set_omega(&mut self, omega: f64, divisor: f64) {
-        self.base = omega / divisor;
+        self.set_base(omega / divisor);
+    }
+
+    /// The phase moves as fast as this.
+    pub(super) fn set_base(&mut self, base: f64) {
+        self.base = base;
         for wave in &mut self.load {
             let frequency = wave.harmonic * self.base;
             let pairs = wave.input.iter().zip(&self.linear.blocks);
@@ -426,11 +459,27 @@ fn contact(
             .offset
             .add(term, coefficients[term.coefficient], &[1.0]);
     }
+    contact.standing = standing(of, coefficients, layout.coordinates);
     contact
 }
 
+fn standing(of: &ContactLayout, coefficients: &[f64], n: usize) -> Option<Standing> {
+    let mut terms = of.force.iter().chain(&of.gap).chain(&of.offset);
+    let sum = |terms: &[Term], n: usize| {
+        let mut to = DVector::zeros(n);
+        for term in terms {
+            to[term.index] += coefficients[term.coefficient];
+        }
+        to
+    };
+    terms.all(|term| term.wave.harmonic == 0).then(|| Standing {
+        force: sum(&of.force, n),
+        gap: sum(&of.gap, n),
+        offset: sum(&of.offset, 1)[0],
+    })
+}
+
 fn load(layout: &Layout, coefficients: &[f64], linear: &Linear) -> Vec<Wave> {
-    let pairs = linear.blocks.len();
     let mut waves: Vec<(u32, DVector<Complex<f64>>)> = Vec::new();
     for entry in &layout.load {
         let harmonic = entry.wave.harmonic;
@@ -448,14 +497,7 @@ fn load(layout: &Layout, coefficients: &[f64], linear: &Linear) -> Vec<Wave> {
     }
     let waves = waves.into_iter().map(|(harmonic, amplitude)| {
         let input = linear.input.map(|x| Complex::new(x, 0.0)) * amplitude;
-        Wave {
-            harmonic: f64::from(harmonic),
-            input: (0..pairs)
-                .map(|r| [input[2 * r], input[2 * r + 1]])
-                .collect(),
-            steady: vec![[Complex::new(0.0, 0.0); 2]; 2 * pairs],
-            resonant: Vec::new(),
-        }
+        Wave::new(f64::from(harmonic), &input)
     });
     waves.collect()
 }

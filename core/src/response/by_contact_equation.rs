@@ -9,7 +9,7 @@ use crate::branches::branch::{Branch, Further};
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::request::Request;
-use crate::contact_equation::compute::Followed;
+use crate::contact_equation::compute::{Followed, Guesses};
 use crate::contact_equation::problem::ContactProblem;
 use crate::contact_equation::{ContactEquation, Rest, compute};
 use crate::error::Error;
@@ -27,15 +27,23 @@ impl Follow for ContactEquation {
             .held()
             .problem(value, value)?;
         let problem = ContactProblem::new(asked, request.tolerance);
-        let guess = by_shooting::with_series(request, value)?;
-        compute::orbit(&problem, &guess, value)
+        let first = by_shooting::with_series(request, value)?;
+        let guesses = Guesses {
+            first: &first,
+            better: &mut || self.shooting().orbit(request, value),
+        };
+        compute::orbit(&problem, guesses, value)
     }
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
         let (range, problem) = self.problem(request)?;
-        let guess = by_shooting::with_series(request, range[0])?;
+        let first = by_shooting::with_series(request, range[0])?;
         begin(request, || further(request, *self, None))?;
-        let followed = compute::branch(&problem, &guess, range, visit)?;
+        let guesses = Guesses {
+            first: &first,
+            better: &mut || self.shooting().orbit(request, range[0]),
+        };
+        let followed = compute::branch(&problem, guesses, range, visit)?;
         Ok(with_request(followed, request, *self))
     }
 

@@ -1,0 +1,159 @@
+//! The linear part while contacts are closed whose forces are affine: these are in it, and the motion is known in closed form there too.
+//!
+//! Where every contact is on a piece without force, or on one of `phi = phi_0 + k (g - g_0) + c g'` whose gap `g = d . q - delta` has a
+//! constant direction and a constant offset, as its force `e phi` has,
+//!
+//! ```text
+//! M q'' + (C + sum c e d^T) q' + (K + sum k e d^T) q = F - sum e (phi_0 - k (g_0 + delta))                     (1)
+//! ```
+//!
+//! With `T_c` of (1) in [`linear`](super::linear), states of the linear part are, with those of this one,
+//!
+//! ```text
+//! y = S z,    S = T^-1 T_c                                                                                    (2)
+//! ```
+//!
+//! Source: Shaw and Holmes (1983), A periodically forced piecewise linear oscillator, Journal of Sound and Vibration 90(1) (motions that
+//! are known in closed form on both sides of a stop, with the times of switching as unknowns).
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::integrals::add;
+use super::linear::Linear;
+use super::values::{Contact, Values, Wave};
+use crate::law::{Derivatives, On, Variation};
+use crate::system::System;
+
+/// More states than this are followed by forces at nodes: (2) costs their cube on every interval.
+const MOST: usize = 40;
+/// Eigenvectors nearer to dependent ones than this leave so many digits less in (2). Where they are, forces are unknown at nodes.
+const DEPENDENT: f64 = 1e3;
+
+/// (1) at values of parameters and frequency.
+#[derive(Debug, Clone)]
+pub(super) struct Configuration {
+    /// Its linear part and its load, without contacts.
+    pub(super) values: Values,
+    /// `S`
+    pub(super) to: DMatrix<f64>,
+    /// `S^-1`
+    pub(super) from: DMatrix<f64>,
+}
+
+impl Configuration {
+    /// With every contact on a piece; `None` where a force is not affine, a direction or an offset moves, or eigenvectors are dependent.
+    pub(super) fn new(system: &dyn System, values: &Values, pieces: &[usize]) -> Option<Self> {
+        let [mass, mut damping, mut stiffness] = values.matrices.clone();
+        let mut load = DVector::zeros(mass.nrows());
+        for (contact, &piece) in values.contacts.iter().zip(pieces) {
+            let facts = &system.law(contact.law).facts().pieces[piece];
+            if facts.force == Variation::Zero {
+                continue;
+            }
+            let standing = contact.standing.as_ref().filter(|_| facts.affine)?;
+            let affine = Affine::of(system, contact, piece);
+            let product = &standing.force * standing.gap.transpose();
+            damping += affine.by_rate * &product;
+            stiffness += affine.by_gap * product;
+            load -= (affine.force - affine.by_gap * (affine.at + standing.offset)) * &standing.force;
+        }
+        let linear = Linear::new(&mass, &damping, &stiffness)?;
+        let to = &values.linear.inverse * states(&linear);
+        let from = &linear.inverse * states(&values.linear);
+        let waves = waves(&values.load, &from, &(&linear.input * load));
+        let base = values.base;
+        let mut values = Values {
+            linear,
+            base: 0.0,
+            contacts: Vec::new(),
+            load: waves,
+            matrices: [mass, damping, stiffness],
+        };
+        values.set_base(base);
+        Some(Self { values, to, from })
+    }
+
+    /// Whether states of this many may be followed so.
+    pub(super) fn pays(order: usize) -> bool {
+        order <= MOST
+    }
+
+    /// Eigenvectors are far enough from dependent ones.
+    pub(super) fn is_sound(&self) -> bool {
+        self.values.linear.dependence <= DEPENDENT
+    }
+
+    /// States of this one from those of the linear part.
+    pub(super) fn take(&self, y: &[f64], z: &mut [f64]) {
+        product(&self.from, y, z);
+    }
+
+    /// States of the linear part from those of this one.
+    pub(super) fn give(&self, z: &[f64], y: &mut [f64]) {
+        product(&self.to, z, y);
+    }
+}
+
+fn product(matrix: &DMatrix<f64>, of: &[f64], to: &mut [f64]) {
+    to.fill(0.0);
+    for (column, x) in matrix.column_iter().zip(of) {
+        add(to, *x, column.as_slice());
+    }
+}
+
+/// `T`
+fn states(linear: &Linear) -> DMatrix<f64> {
+    let n = linear.blocks.len();
+    let mut both = DMatrix::zeros(2 * n, 2 * n);
+    both.rows_mut(0, n).copy_from(&linear.positions);
+    both.rows_mut(n, n).copy_from(&linear.velocities);
+    both
+}
+
+/// A force on a piece of a law, `force + by_gap (g - at) + by_rate g'`.
+struct Affine {
+    at: f64,
+    force: f64,
+    by_gap: f64,
+    by_rate: f64,
+}
+
+impl Affine {
+    fn of(system: &dyn System, contact: &Contact, piece: usize) -> Self {
+        let at = contact.held(piece, 0.0);
+        let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
+        let out = Derivatives {
+            force: &mut force,
+            by_gap: &mut by_gap,
+            by_rate: &mut by_rate,
+        };
+        let law = system.law(contact.law);
+        law.derivatives(On::Piece(piece), &contact.arguments, &[at], &[0.0], out);
+        Self {
+            at,
+            force: force[0],
+            by_gap: by_gap[0],
+            by_rate: by_rate[0],
+        }
+    }
+}
+
+/// Waves of a load as they are for other states, and what does not change in it with what a constant load does to these.
+fn waves(load: &[Wave], from: &DMatrix<f64>, constant: &DVector<f64>) -> Vec<Wave> {
+    let order = constant.len();
+    let from = from.map(|x| Complex::new(x, 0.0));
+    let constant = constant.map(|x| Complex::new(x, 0.0));
+    let of = |wave: &Wave| {
+        let entries = wave.input.iter().flatten().copied();
+        let mut input = &from * DVector::from_iterator(order, entries);
+        if wave.harmonic == 0.0 {
+            input += &constant;
+        }
+        Wave::new(wave.harmonic, &input)
+    };
+    let mut waves: Vec<Wave> = load.iter().map(of).collect();
+    if load.iter().all(|wave| wave.harmonic != 0.0) {
+        waves.push(Wave::new(0.0, &constant));
+    }
+    waves
+}

@@ -1,0 +1,96 @@
+//! Motions that a first orbit is looked for at: the series of an orbit, or its states along the motion itself.
+//!
+//! Between samples at the phases `0` and `d` positions are the cubic that has both positions and velocities (de Boor (2001), A Practical Guide
+//! to Splines, chapter IV, cubic Hermite interpolation).
+
+use std::f64::consts::TAU;
+
+use super::problem::ContactProblem;
+use crate::branches::orbit::Orbit;
+use crate::branches::point::Point;
+use crate::error::Error;
+use crate::time::MotionError;
+use crate::time::history::{self, Span};
+use crate::time::stroboscope::Stroboscope;
+
+/// Samples in a period of the declaration.
+const SAMPLES: usize = 4096;
+
+/// An orbit with its motion.
+pub(super) struct Guess<'g> {
+    pub(super) point: &'g Point,
+    /// States at equal distances, each with all positions and then all velocities; none where the series of the orbit tells them.
+    samples: Vec<f64>,
+}
+
+impl<'g> Guess<'g> {
+    /// By the series of an orbit.
+    pub(super) fn by_series(point: &'g Point) -> Self {
+        Self {
+            point,
+            samples: Vec::new(),
+        }
+    }
+
+    /// By the motion from the state of an orbit, which has few harmonics where contacts are stiff.
+    ///
+    /// # Errors
+    /// If the motion cannot be computed.
+    pub(super) fn by_motion(problem: &ContactProblem, point: &'g Point) -> Result<Self, Error> {
+        let asked = &problem.asked;
+        let failed = |reason| MotionError {
+            value: point.value,
+            reason,
+        };
+        let mut flow = asked.flow(asked.source.tolerance)?;
+        flow.set(asked.variable, point.value).map_err(failed)?;
+        let mut samples = Vec::new();
+        let mut state = point.orbit.state();
+        let span = Span {
+            periods: point.orbit.period,
+            samples: SAMPLES,
+        };
+        let mut keep = |_: f64, state: &[f64]| samples.extend_from_slice(state);
+        let mut map = Stroboscope::new(flow);
+        history::record(&mut map, &mut state, span, &mut keep).map_err(failed)?;
+        Ok(Self { point, samples })
+    }
+
+    /// How fast its phase moves.
+    pub(super) fn rate(&self) -> f64 {
+        self.point.orbit.base * self.point.orbit.period as f64
+    }
+
+    /// Writes positions and velocities at a phase.
+    pub(super) fn write(&self, phase: f64, state: &mut [f64]) {
+        let orbit = &self.point.orbit;
+        if self.samples.is_empty() {
+            return write_series(orbit, phase / self.rate(), state);
+        }
+        let order = state.len();
+        let n = order / 2;
+        let last = self.samples.len() / order - 1;
+        let place = (phase / TAU * SAMPLES as f64).rem_euclid(last as f64);
+        let index = (place as usize).min(last - 1);
+        let [s, step] = [place - index as f64, TAU / SAMPLES as f64 / self.rate()];
+        let [a, b] = [index, index + 1].map(|index| &self.samples[index * order..][..order]);
+        for i in 0..n {
+            let rise = b[i] - a[i];
+            let ends = [step * a[n + i], step * b[n + i]];
+            // x = a + s (v_a + s (3 r - 2 v_a - v_b + s (v_a + v_b - 2 r)))
+            let square = 3.0 * rise - 2.0 * ends[0] - ends[1];
+            let cube = ends[0] + ends[1] - 2.0 * rise;
+            state[i] = a[i] + s * (ends[0] + s * (square + s * cube));
+            state[n + i] = (ends[0] + s * (2.0 * square + 3.0 * s * cube)) / step;
+        }
+    }
+}
+
+fn write_series(orbit: &Orbit, time: f64, state: &mut [f64]) {
+    let coordinates = orbit.coordinates();
+    for i in 0..coordinates {
+        if let Some((x, v)) = orbit.state_at(i, time) {
+            (state[i], state[coordinates + i]) = (x, v);
+        }
+    }
+}
