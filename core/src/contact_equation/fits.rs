@@ -1,5 +1,6 @@
 //! Whether equations fit the orbit of their last pass: switches are where its gaps have them, and what may meet is told in pairs.
 
+use super::configuration::Configuration;
 use super::equations::Equations;
 use super::gaps::room;
 use super::motion::{GapExtreme, Motion};
@@ -31,6 +32,11 @@ impl Equations {
     pub(super) fn is_in_order(&self) -> bool {
         let ways = self.passed.iter().map(|passed| passed.phases);
         ways.into_iter().all(|[from, to]| to >= from - BACK)
+    }
+
+    /// Whether the configurations of the last pass have eigenvectors that are far enough from dependent ones.
+    fn is_sound(&self) -> bool {
+        self.configurations.iter().all(Configuration::is_sound)
     }
 
     /// Whether the step from the last orbit to these unknowns has led over the end of a stretch whose switches are told each by itself, or over
@@ -76,7 +82,7 @@ impl Run<'_> {
         }
         let found = motion.extremes().gaps.concat();
         let mut fits = self.pairs_fit(u);
-        if self.is_watched_in_vain(u, &found) {
+        if self.is_watched_in_vain(u, &found) || !self.equations.is_sound() {
             fits = Fits::Soon;
         }
         for extreme in &found {

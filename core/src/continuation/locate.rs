@@ -54,6 +54,35 @@ pub(crate) fn locate_beside<P: AsProblem + ?Sized>(
     search(problem, newton, step, options, tolerance, &ASIDE, test)
 }
 
+/// The same, where the curve is told by a linear form that grows along it, as where it bends so sharply that no arc length does.
+pub(crate) fn locate_along<P: AsProblem + ?Sized>(
+    problem: &mut P,
+    newton: &mut Newton,
+    step: Step<'_>,
+    form: Vec<f64>,
+    options: NewtonOptions,
+    tolerance: f64,
+    mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
+) -> Option<Located> {
+    let arc = ArcLength::along_form(form, step);
+    // Tangents of the ends go with the form, too.
+    let mut end = |at: &CurvePoint| {
+        let s = arc.at(&at.u);
+        let point = arc.corrected(problem.problem(), newton, at.u.clone(), s, options)?;
+        let value = test(problem, &point);
+        Some((point, value))
+    };
+    let (before, next) = (end(step.before)?, end(step.next)?);
+    if (before.1 > 0.0) == (next.1 > 0.0) {
+        return None;
+    }
+    let step = Step {
+        before: &before.0,
+        next: &next.0,
+    };
+    search_along(problem, newton, &arc, step, options, tolerance, &[], test)
+}
+
 fn search<P: AsProblem + ?Sized>(
     problem: &mut P,
     newton: &mut Newton,
@@ -61,11 +90,24 @@ fn search<P: AsProblem + ?Sized>(
     options: NewtonOptions,
     tolerance: f64,
     others: &[f64],
+    test: impl FnMut(&mut P, &CurvePoint) -> f64,
+) -> Option<Located> {
+    let arc = ArcLength::from(newton, step.before);
+    search_along(problem, newton, &arc, step, options, tolerance, others, test)
+}
+
+fn search_along<P: AsProblem + ?Sized>(
+    problem: &mut P,
+    newton: &mut Newton,
+    arc: &ArcLength,
+    step: Step<'_>,
+    options: NewtonOptions,
+    tolerance: f64,
+    others: &[f64],
     mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
     let Step { before: a, next: b } = step;
-    let arc = ArcLength::from(newton, a);
-    let length = arc.length(newton, a, b);
+    let length = arc.at(&b.u);
     let mut side = |x, point: &CurvePoint| Side {
         place: Place {
             x,
@@ -79,7 +121,7 @@ fn search<P: AsProblem + ?Sized>(
     for _ in 0..STEPS {
         let mut at = |part: f64, near_by: bool| {
             let s = bracket.at(part);
-            let trial = between([&near, &far], s, &arc);
+            let trial = between([&near, &far], s, arc);
             let known = near_by.then(|| trial.clone());
             let point = arc.corrected(problem.problem(), newton, trial, s, options)?;
             let moved = known.map_or(0.0, |known| arc.apart(newton, &point.u, &known));
@@ -164,6 +206,19 @@ impl ArcLength {
             origin: dot(&border, &a.u),
             border,
             scale: a.scale,
+        }
+    }
+
+    /// Along a form, which grows over the step.
+    fn along_form(mut border: Vec<f64>, Step { before, next }: Step<'_>) -> Self {
+        let rise = dot(&border, &next.u) - dot(&border, &before.u);
+        for x in &mut border {
+            *x *= rise.signum();
+        }
+        Self {
+            origin: dot(&border, &before.u),
+            border,
+            scale: before.scale,
         }
     }
 

@@ -2,11 +2,11 @@
 
 use super::Engine;
 use super::seen::Seen;
-use crate::branches::extreme::Bend;
+use crate::branches::extreme::{Bend, passed};
 use crate::branches::problem::{BranchProblem, Change, Root, Test, TestValue, Zero, ZeroOutcome};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::{CurvePoint, Step, Stop};
-use crate::continuation::locate::{Located, locate, locate_beside};
+use crate::continuation::locate::{Located, locate, locate_along, locate_beside};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::AsProblem;
 use crate::event::{EventKind, Turn};
@@ -203,9 +203,16 @@ impl<'s> Search<'s> {
         known && sharpest == Some(Bend::Steep)
     }
 
+    /// The test function, in the units of both ends.
+    fn value(&self, problem: &mut dyn BranchProblem, at: &CurvePoint) -> f64 {
+        match self.change.test {
+            Test::Slope => at.parameter_slope(),
+            Test::Watched(index) => problem.test(index, at).relative_to(self.reference()),
+        }
+    }
+
     /// Where the test function changes its sign.
     fn root(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Option<Root> {
-        let (test, reference) = (self.change.test, self.reference());
         let aim = if is_crossing(problem, self.change) {
             Aim::Crossing
         } else if problem.corners() {
@@ -213,11 +220,50 @@ impl<'s> Search<'s> {
         } else {
             Aim::Beside(problem.aim())
         };
-        let value = |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| match test {
-            Test::Slope => at.parameter_slope(),
-            Test::Watched(index) => problem.test(index, at).relative_to(reference),
-        };
-        root(problem, newton, self.step, self.options, aim, value)
+        let value =
+            |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| self.value(problem, at);
+        let found = root(problem, newton, self.step, self.options, aim, value);
+        let jumps = |root: &Root| !root.located.vanishes && root.located.jump.is_finite();
+        if matches!(aim, Aim::Crossing) || !found.as_ref().is_some_and(jumps) {
+            return found;
+        }
+        let left = |root: &Root| root.located.test.abs();
+        let along = self.along_heights(problem, newton);
+        let along = along.filter(|along| found.as_ref().is_none_or(|f| left(along) < left(f)));
+        along.or(found)
+    }
+
+    /// The same where an extreme goes through its level and the branch bends sharply beside that: what is a jump to the arc length is none to
+    /// the height of the extreme, which grows through the touch.
+    fn along_heights(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+    ) -> Option<Root> {
+        let Step { before, next } = self.step;
+        let (mut here, mut there) = (Vec::new(), Vec::new());
+        if !(problem.extremes(&before.u, &mut here) && problem.extremes(&next.u, &mut there)) {
+            return None;
+        }
+        let mut form = vec![0.0; before.u.len()];
+        let mut found = passed(&here, &there).into_iter().filter_map(|passage| {
+            let range = before.scale.parameter;
+            let ends = [(before, passage.before), (next, passage.next)];
+            let known = ends.iter().any(|(at, extreme)| {
+                problem.extreme_form(&at.u, extreme, range, &mut form)
+            });
+            if !known {
+                return None;
+            }
+            let (aim, options) = (problem.aim(), self.options);
+            let form = form.clone();
+            let value =
+                |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| self.value(problem, at);
+            let located = locate_along(problem, newton, self.step, form, options, aim, value)?;
+            let error = 0.0;
+            Some(Root { located, error })
+        });
+        found.next()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Orbits against those of shooting, and derivatives against differences.
 
+mod affine;
 mod grazings;
 mod jumps;
 mod moving_stiffness;
