@@ -189,13 +189,17 @@ fn begun<'p>(
     guesses: Guesses<'_>,
     value: f64,
 ) -> Result<(Run<'p>, Vec<f64>), Error> {
+    let Guesses {
+        first: guess,
+        better,
+    } = guesses;
     let fitting = |guess: &Guess<'_>| {
         let first = first(problem, guess, value)?;
         let found = fitting(problem, first);
         found.ok_or_else(|| Error::from(lost(value)))
     };
-    fitting(&Guess::by_series(guesses.first)).or_else(|reason| {
-        let Ok(better) = (guesses.better)() else {
+    fitting(&Guess::by_series(guess)).or_else(|reason| {
+        let Ok(better) = better() else {
             return Err(reason);
         };
         fitting(&Guess::by_motion(problem, &better)?)
@@ -211,7 +215,7 @@ fn fitting(problem: &ContactProblem, first: First) -> Option<(Run<'_>, Vec<f64>)
         resolution,
     } = first;
     let mut run = Run::new(problem, frame, resolution, equations);
-    for _ in 0..REFUSALS {
+    for _ in 0..=REFUSALS {
         run.equations.compute(&u, false);
         if run.equations.failed {
             return None;

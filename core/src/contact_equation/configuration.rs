@@ -55,7 +55,8 @@ impl Configuration {
             let product = &standing.force * standing.gap.transpose();
             damping += affine.by_rate * &product;
             stiffness += affine.by_gap * product;
-            load -= (affine.force - affine.by_gap * (affine.at + standing.offset)) * &standing.force;
+            load -=
+                (affine.force - affine.by_gap * (affine.at + standing.offset)) * &standing.force;
         }
         let linear = Linear::new(&mass, &damping, &stiffness)?;
         let to = &values.linear.inverse * states(&linear);

@@ -137,9 +137,7 @@ impl Pass<'_> {
             to,
             time,
         };
-        let values = stretch
-            .configuration
-            .map_or(self.values, |of| &of.values);
+        let values = stretch.configuration.map_or(self.values, |of| &of.values);
         passed.phases = [from.phase, to.phase];
         let [steady, by_phase, by_base] = &mut self.room.steady_from;
         values.write_steady(from.phase, steady, Some([by_phase, by_base]));
@@ -210,9 +208,7 @@ impl Pass<'_> {
         let [_, by_phase, by_base] = &room.steady_from;
         let whole = [1.0];
         let way = Way {
-            values: stretch
-                .configuration
-                .map_or(self.values, |of| &of.values),
+            values: stretch.configuration.map_or(self.values, |of| &of.values),
             phases: loaded.phases,
             time: loaded.time,
             psi: if active.is_empty() {

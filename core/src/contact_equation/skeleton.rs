@@ -27,11 +27,11 @@
 
 use std::f64::consts::TAU;
 
+use super::configuration::Configuration;
 use super::grading::STEEPEST;
 use super::nodes::{COUNTS, Nodes};
 use super::place::{Opening, Place};
 use super::placement::{Placement, Switch, Told};
-use super::configuration::Configuration;
 use super::values::{Contact, Values};
 use crate::branches::recurrence::Recurrence;
 use crate::law::{Law, Quantity, Variation};
@@ -158,11 +158,7 @@ pub(super) struct Skeleton {
 
 impl Skeleton {
     /// From the switches of an orbit, in the order of time from its beginning on.
-    pub(super) fn new(
-        system: &dyn System,
-        values: &Values,
-        placement: Placement,
-    ) -> Self {
+    pub(super) fn new(system: &dyn System, values: &Values, placement: Placement) -> Self {
         let contacts = &values.contacts;
         let Placement {
             beginning, placed, ..
@@ -307,20 +303,7 @@ impl Skeleton {
     /// Adds what lies between two cuts, in as many panels as its length asks for.
     fn add(&mut self, system: &dyn System, values: &Values, way: &Way<'_>) {
         let contacts = &values.contacts;
-        let law = |contact: usize| system.law(contacts[contact].law);
-        let has_force = |contact: &usize| {
-            let facts = &law(*contact).facts().pieces[way.pieces[*contact]];
-            facts.force != Variation::Zero
-        };
-        let mut active: Vec<usize> = (0..contacts.len()).filter(has_force).collect();
-        let configuration = if active.is_empty() {
-            None
-        } else {
-            self.configuration(system, values, way.pieces)
-        };
-        if configuration.is_some() {
-            active.clear();
-        }
+        let (active, configuration) = self.forced(system, values, way.pieces);
         let panels = if active.is_empty() {
             1
         } else {
@@ -368,6 +351,27 @@ impl Skeleton {
                 nodes,
                 ends: way.ends.filter(|_| panel + 1 == panels),
             });
+        }
+    }
+
+    /// Contacts whose forces are unknown where they are on these pieces, and the configuration that has the forces, if there is one.
+    fn forced(
+        &mut self,
+        system: &dyn System,
+        values: &Values,
+        pieces: &[usize],
+    ) -> (Vec<usize>, Option<usize>) {
+        let has_force = |contact: &usize| {
+            let law = system.law(values.contacts[*contact].law);
+            law.facts().pieces[pieces[*contact]].force != Variation::Zero
+        };
+        let active: Vec<usize> = (0..pieces.len()).filter(has_force).collect();
+        if active.is_empty() {
+            return (active, None);
+        }
+        match self.configuration(system, values, pieces) {
+            None => (active, None),
+            known => (Vec::new(), known),
         }
     }
 

@@ -117,6 +117,16 @@ pub(crate) enum Start {
     Onward(Box<Halted>),
 }
 
+impl Start {
+    /// The step that a walk which goes on was about to make.
+    pub(crate) fn step(&self) -> Option<f64> {
+        match self {
+            Self::At(halted) | Self::Onward(halted) => Some(halted.step),
+            Self::Near(_) | Self::Along(_) => None,
+        }
+    }
+}
+
 /// A halted walk, whose vectors may be given another length.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

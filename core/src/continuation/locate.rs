@@ -80,7 +80,8 @@ pub(crate) fn locate_along<P: AsProblem + ?Sized>(
         before: &before.0,
         next: &next.0,
     };
-    search_along(problem, newton, &arc, step, options, tolerance, &[], test)
+    let way = Way { arc: &arc, step };
+    search_along(problem, newton, way, options, tolerance, &[], test)
 }
 
 fn search<P: AsProblem + ?Sized>(
@@ -93,14 +94,21 @@ fn search<P: AsProblem + ?Sized>(
     test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
     let arc = ArcLength::from(newton, step.before);
-    search_along(problem, newton, &arc, step, options, tolerance, others, test)
+    let way = Way { arc: &arc, step };
+    search_along(problem, newton, way, options, tolerance, others, test)
+}
+
+/// A step, and what tells a place in it.
+#[derive(Clone, Copy)]
+struct Way<'w> {
+    arc: &'w ArcLength,
+    step: Step<'w>,
 }
 
 fn search_along<P: AsProblem + ?Sized>(
     problem: &mut P,
     newton: &mut Newton,
-    arc: &ArcLength,
-    step: Step<'_>,
+    Way { arc, step }: Way<'_>,
     options: NewtonOptions,
     tolerance: f64,
     others: &[f64],

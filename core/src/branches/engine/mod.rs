@@ -191,7 +191,7 @@ fn go_on(
             Err(_) if problem.couple_fully() => begun,
             Err(reason) => {
                 let Some(halted) = last.take() else {
-                    return Err(reason);
+                    return engine.stranded(problem, &begun, reason);
                 };
                 // What was found with the former unknowns stands.
                 problem.revert();
@@ -202,6 +202,25 @@ fn go_on(
 }
 
 impl Engine {
+    /// The walk cannot go on from where it was halted. What was followed until there stands.
+    fn stranded(
+        &self,
+        problem: &mut dyn BranchProblem,
+        begun: &Start,
+        reason: NewtonError,
+    ) -> Result<Stop, NewtonError> {
+        let last = problem.record().points.last();
+        let (Some(value), Some(step)) = (last.map(|last| last.value), begun.step()) else {
+            return Err(reason);
+        };
+        let stop = Stop::StepTooShort {
+            step,
+            value,
+            reason,
+        };
+        Ok(self.named(problem, stop))
+    }
+
     fn new(options: FollowOptions) -> Self {
         Self {
             options,

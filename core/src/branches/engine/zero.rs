@@ -235,11 +235,7 @@ impl<'s> Search<'s> {
 
     /// The same where an extreme goes through its level and the branch bends sharply beside that: what is a jump to the arc length is none to
     /// the height of the extreme, which grows through the touch.
-    fn along_heights(
-        &self,
-        problem: &mut dyn BranchProblem,
-        newton: &mut Newton,
-    ) -> Option<Root> {
+    fn along_heights(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Option<Root> {
         let Step { before, next } = self.step;
         let (mut here, mut there) = (Vec::new(), Vec::new());
         if !(problem.extremes(&before.u, &mut here) && problem.extremes(&next.u, &mut there)) {
@@ -249,9 +245,9 @@ impl<'s> Search<'s> {
         let mut found = passed(&here, &there).into_iter().filter_map(|passage| {
             let range = before.scale.parameter;
             let ends = [(before, passage.before), (next, passage.next)];
-            let known = ends.iter().any(|(at, extreme)| {
-                problem.extreme_form(&at.u, extreme, range, &mut form)
-            });
+            let known = ends
+                .iter()
+                .any(|(at, extreme)| problem.extreme_form(&at.u, extreme, range, &mut form));
             if !known {
                 return None;
             }

@@ -46,8 +46,11 @@ crate::oscillator! {
 
 #[test]
 fn no_force_is_unknown() {
-    let models: [&dyn crate::system::System; 3] =
-        [&Stop1 { damping: 0.1 }, &Backlash {}, &Pair { k: 20.0, c: 0.3 }];
+    let models: [&dyn crate::system::System; 3] = [
+        &Stop1 { damping: 0.1 },
+        &Backlash {},
+        &Pair { k: 20.0, c: 0.3 },
+    ];
     for model in models {
         let (equations, u) = first(model, None, 0.8, [12, 1]);
         assert_eq!(equations.skeleton.forces, 0);
@@ -69,7 +72,11 @@ fn derivatives_in_closed_form_are_those_of_differences() {
 
 #[test]
 fn events_are_those_of_the_other_closed_form() {
-    events_agree(&FrequencyResponse::of(&Stop1 { damping: 0.1 }).from(2.0).to(0.3));
+    events_agree(
+        &FrequencyResponse::of(&Stop1 { damping: 0.1 })
+            .from(2.0)
+            .to(0.3),
+    );
     events_agree(&FrequencyResponse::of(&Backlash {}).from(0.3).to(1.5));
     let pair = Pair { k: 20.0, c: 0.3 };
     events_agree(&FrequencyResponse::of(&pair).from(2.2).to(1.0));
@@ -85,13 +92,21 @@ fn a_fold_beside_a_touch_is_told_from_it() {
     for [from, to] in [[0.8, 2.2], [0.9, 2.2], [2.2, 0.9]] {
         let request = FrequencyResponse::of(&Hard {}).from(from).to(to);
         let branch = request.by(ContactEquation::new()).run().unwrap();
-        assert_eq!((branch.stopped, &branch.turns[..]), (Stop::ReachedEnd, &[][..]));
+        assert_eq!(
+            (branch.stopped, &branch.turns[..]),
+            (Stop::ReachedEnd, &[][..])
+        );
         let events = branch.events.iter();
         let beside = events.filter(|event| (event.point.value - 1.729_885_7).abs() < 1e-6);
-        let mut beside: Vec<_> = beside.map(|event| (event.kind, event.point.value)).collect();
+        let mut beside: Vec<_> = beside
+            .map(|event| (event.kind, event.point.value))
+            .collect();
         beside.sort_by(|a, b| a.1.total_cmp(&b.1));
         let kinds: Vec<_> = beside.iter().map(|(kind, _)| *kind).collect();
-        assert_eq!(kinds, [EventKind::Fold, EventKind::Grazing { turns: false }]);
+        assert_eq!(
+            kinds,
+            [EventKind::Fold, EventKind::Grazing { turns: false }]
+        );
         folds.push(beside[0].1);
     }
     let request = FrequencyResponse::of(&Hard {}).from(0.9).to(2.2);
