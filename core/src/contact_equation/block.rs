@@ -92,6 +92,23 @@ impl Block {
         self.mean.abs() + self.square.abs().sqrt()
     }
 
+    /// The faster of what decays, whether it oscillates or not.
+    pub(super) fn decay(&self) -> f64 {
+        self.mean.abs() + self.square.max(0.0).sqrt()
+    }
+
+    /// Squares of the sizes of both exponents, without those that are zero.
+    pub(super) fn squares(&self) -> impl Iterator<Item = f64> {
+        let product = (self.mean * self.mean - self.square).abs();
+        let larger = if self.square > 0.0 {
+            self.rate() * self.rate()
+        } else {
+            product
+        };
+        let smaller = product * product / larger;
+        [larger, smaller].into_iter().filter(|size| *size > 0.0)
+    }
+
     /// Angular frequency of what oscillates; zero where nothing does.
     pub(super) fn turns(&self) -> f64 {
         (-self.square).max(0.0).sqrt()

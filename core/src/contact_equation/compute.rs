@@ -215,17 +215,21 @@ fn fitting(problem: &ContactProblem, first: First) -> Option<(Run<'_>, Vec<f64>)
         resolution,
     } = first;
     let mut run = Run::new(problem, frame, resolution, equations);
-    for _ in 0..=REFUSALS {
+    for tried in 0..=REFUSALS {
         run.equations.compute(&u, false);
         if run.equations.failed {
             return None;
         }
         if run.fits(&u) != Fits::No {
-            return Some((run, u));
+            // Another orbit may come back earlier than the one that was looked for.
+            let other = tried > 0 && problem.earlier(&run.equations, problem.same()).is_some();
+            return (!other).then_some((run, u));
         }
-        (run.equations, u) = run.replanned(&u)?;
-        let mut newton = Newton::new(&run.equations);
-        solve::at_value(&mut run.equations, &mut newton, &mut u, AT_START).ok()?;
+        if tried < REFUSALS {
+            (run.equations, u) = run.replanned(&u)?;
+            let mut newton = Newton::new(&run.equations);
+            solve::at_value(&mut run.equations, &mut newton, &mut u, AT_START).ok()?;
+        }
     }
     None
 }

@@ -18,16 +18,23 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use super::block::Block;
 use super::integrals::add;
 use super::linear::Linear;
 use super::values::{Contact, Values, Wave};
 use crate::law::{Derivatives, On, Variation};
 use crate::system::System;
 
-/// More states than this are followed by forces at nodes: (2) costs their cube on every interval.
+/// More states than this are followed by forces at nodes: (2) costs their cube on every interval. Where coefficients change along the branch,
+/// all of (1) is made anew at every value, and pays for fewer.
 const MOST: usize = 40;
+const MOST_IF_IT_CHANGES: usize = 12;
 /// Eigenvectors nearer to dependent ones than this leave so many digits less in (2). Where they are, forces are unknown at nodes.
 const DEPENDENT: f64 = 1e3;
+/// Squares of its slowest exponents are known to rounding of those of its fastest ones, which no finer equations show: up to this quotient.
+const SPREAD: f64 = 1e4;
+/// What decays faster than this in a unit of phase grows as fast where equations go back, as between switches in another order.
+const DECAYS: f64 = 100.0;
 
 /// (1) at values of parameters and frequency.
 #[derive(Debug, Clone)]
@@ -69,19 +76,30 @@ impl Configuration {
             contacts: Vec::new(),
             load: waves,
             matrices: [mass, damping, stiffness],
+            changes: values.changes,
         };
         values.set_base(base);
         Some(Self { values, to, from })
     }
 
-    /// Whether states of this many may be followed so.
-    pub(super) fn pays(order: usize) -> bool {
-        order <= MOST
+    /// Whether so many states may be followed so, where coefficients change along the branch or not.
+    pub(super) fn pays(order: usize, changes: bool) -> bool {
+        order <= if changes { MOST_IF_IT_CHANGES } else { MOST }
     }
 
-    /// Eigenvectors are far enough from dependent ones.
+    /// It is known to nearly all digits: eigenvectors are far from dependent ones, exponents near enough to each other, and nothing decays at once.
     pub(super) fn is_sound(&self) -> bool {
-        self.values.linear.dependence <= DEPENDENT
+        let Linear {
+            blocks, dependence, ..
+        } = &self.values.linear;
+        let decay = blocks.iter().map(Block::decay).fold(0.0, f64::max);
+        let sizes = || blocks.iter().flat_map(Block::squares);
+        let [most, least] = [
+            sizes().fold(0.0, f64::max),
+            sizes().fold(f64::INFINITY, f64::min),
+        ];
+        let near = blocks.len() == 1 || most <= SPREAD * least;
+        *dependence <= DEPENDENT && near && decay <= DECAYS * self.values.base
     }
 
     /// States of this one from those of the linear part.
@@ -153,7 +171,8 @@ fn waves(load: &[Wave], from: &DMatrix<f64>, constant: &DVector<f64>) -> Vec<Wav
         Wave::new(wave.harmonic, &input)
     };
     let mut waves: Vec<Wave> = load.iter().map(of).collect();
-    if load.iter().all(|wave| wave.harmonic != 0.0) {
+    let is_loaded = constant.iter().any(|x| *x != Complex::new(0.0, 0.0));
+    if is_loaded && load.iter().all(|wave| wave.harmonic != 0.0) {
         waves.push(Wave::new(0.0, &constant));
     }
     waves

@@ -34,6 +34,7 @@ use std::cell::OnceCell;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use super::block::Block;
 use super::configuration::Configuration;
 use super::eliminated::Eliminated;
 use super::extremes::Extremes;
@@ -53,6 +54,8 @@ use crate::system::{System, Variable};
 
 /// Part of the parameter's unit for differences of fourth order.
 const DIFFERENCE: f64 = 1e-3;
+/// An angle of which that part changes nothing that the difference does not see.
+const TURNED: f64 = 3.0;
 
 /// What is the same for all orbits of a branch.
 #[derive(Clone)]
@@ -106,7 +109,11 @@ impl Setting {
     /// The system there.
     pub(super) fn values(&self, value: f64) -> Option<Values> {
         let (parameters, omega) = self.at(value);
-        Values::new(self.system.as_ref(), &self.layout, &parameters, omega)
+        let values = Values::new(self.system.as_ref(), &self.layout, &parameters, omega)?;
+        Some(Values {
+            changes: !self.plain,
+            ..values
+        })
     }
 
     /// The configurations of a skeleton at values; `None` where one has dependent eigenvectors.
@@ -380,7 +387,8 @@ impl Equations {
     fn parameter_column(&mut self, u: &[f64], column: &mut [f64]) {
         let n = self.skeleton.unknowns();
         let value = u[n];
-        let step = DIFFERENCE * if value == 0.0 { 1.0 } else { value.abs() };
+        let part = DIFFERENCE / (self.turned() / TURNED).max(1.0);
+        let step = part * if value == 0.0 { 1.0 } else { value.abs() };
         let mut beside = u.to_vec();
         column.fill(0.0);
         // f' = (8 (f(h) - f(-h)) - (f(2h) - f(-2h))) / 12 h
@@ -391,6 +399,19 @@ impl Equations {
                 *column += weight * residual / (12.0 * step);
             }
         }
+    }
+
+    /// The largest angle, or decay, that a configuration of the last pass goes through: what is varied may change as much of it as of itself.
+    fn turned(&self) -> f64 {
+        let intervals = self.skeleton.intervals.iter().zip(&self.passed);
+        let angles = intervals.filter_map(|(interval, passed)| {
+            let of = &self.configurations[interval.configuration?];
+            let rates = of.values.linear.blocks.iter().map(Block::rate);
+            let [from, to] = passed.phases;
+            let time = (to - from).abs() / self.values.base;
+            Some(time * rates.fold(0.0, f64::max))
+        });
+        angles.fold(0.0, f64::max)
     }
 
     /// Everything at unknowns: residuals, and derivatives if asked for.

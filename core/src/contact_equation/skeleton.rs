@@ -384,7 +384,7 @@ impl Skeleton {
     ) -> Option<usize> {
         let known = self.configurations.iter().position(|of| of == pieces);
         let new = || {
-            let pays = Configuration::pays(self.order);
+            let pays = Configuration::pays(self.order, values.changes);
             let of = pays.then(|| Configuration::new(system, values, pieces))?;
             of.filter(Configuration::is_sound)?;
             self.configurations.push(pieces.to_vec());

@@ -275,6 +275,8 @@ pub(super) struct Values {
     pub(super) load: Vec<Wave>,
     /// Mass, damping and stiffness of the linear part.
     pub(super) matrices: [DMatrix<f64>; 3],
+    /// More than the time changes along the branch.
+    pub(super) changes: bool,
 }
 
 impl Values {
@@ -302,6 +304,7 @@ impl Values {
             contacts,
             load,
             matrices: [mass, damping, stiffness],
+            changes: true,
         };
         values.set_omega(omega, f64::from(system.facts().divisor));
         Some(values)

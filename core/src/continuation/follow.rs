@@ -118,10 +118,10 @@ pub(crate) enum Start {
 }
 
 impl Start {
-    /// The step that a walk which goes on was about to make.
-    pub(crate) fn step(&self) -> Option<f64> {
+    /// Where a walk that goes on was.
+    pub(crate) fn halted(&self) -> Option<&Halted> {
         match self {
-            Self::At(halted) | Self::Onward(halted) => Some(halted.step),
+            Self::At(halted) | Self::Onward(halted) => Some(halted),
             Self::Near(_) | Self::Along(_) => None,
         }
     }
@@ -181,6 +181,11 @@ impl Halted {
             && positive(self.step)
             && self.largest.iter().all(|x| x.is_finite())
             && points.all(scaled)
+    }
+
+    /// The step that it was about to make.
+    pub(crate) fn length(&self) -> f64 {
+        self.step
     }
 
     /// The extended vectors of the walk.

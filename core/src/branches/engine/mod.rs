@@ -209,13 +209,12 @@ impl Engine {
         begun: &Start,
         reason: NewtonError,
     ) -> Result<Stop, NewtonError> {
-        let last = problem.record().points.last();
-        let (Some(value), Some(step)) = (last.map(|last| last.value), begun.step()) else {
+        let Some(halted) = begun.halted().filter(|_| problem.points() > 0) else {
             return Err(reason);
         };
         let stop = Stop::StepTooShort {
-            step,
-            value,
+            step: halted.length(),
+            value: halted.point.parameter(),
             reason,
         };
         Ok(self.named(problem, stop))

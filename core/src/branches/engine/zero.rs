@@ -223,26 +223,29 @@ impl<'s> Search<'s> {
         let value =
             |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| self.value(problem, at);
         let found = root(problem, newton, self.step, self.options, aim, value);
-        let jumps = |root: &Root| !root.located.vanishes && root.located.jump.is_finite();
-        if matches!(aim, Aim::Crossing) || !found.as_ref().is_some_and(jumps) {
-            return found;
-        }
         let left = |root: &Root| root.located.test.abs();
-        let along = self.along_heights(problem, newton);
-        let along = along.filter(|along| found.as_ref().is_none_or(|f| left(along) < left(f)));
-        along.or(found)
+        let jumps = |root: &Root| !root.located.vanishes && root.located.jump.is_finite();
+        let jump = found.as_ref().filter(|root| jumps(root)).map(left);
+        let Some(jump) = jump.filter(|_| !matches!(aim, Aim::Crossing)) else {
+            return found;
+        };
+        let along = self.along_heights(problem, newton).into_iter();
+        let least = along.min_by(|a, b| left(a).total_cmp(&left(b)));
+        // What still jumps is where it was.
+        least.filter(|least| left(least) <= STEEP * jump).or(found)
     }
 
     /// The same where an extreme goes through its level and the branch bends sharply beside that: what is a jump to the arc length is none to
     /// the height of the extreme, which grows through the touch.
-    fn along_heights(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Option<Root> {
+    fn along_heights(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Vec<Root> {
         let Step { before, next } = self.step;
         let (mut here, mut there) = (Vec::new(), Vec::new());
         if !(problem.extremes(&before.u, &mut here) && problem.extremes(&next.u, &mut there)) {
-            return None;
+            return Vec::new();
         }
         let mut form = vec![0.0; before.u.len()];
-        let mut found = passed(&here, &there).into_iter().filter_map(|passage| {
+        let farthest = newton.norm().length(before.scale, &self.step.difference());
+        let found = passed(&here, &there).into_iter().filter_map(|passage| {
             let range = before.scale.parameter;
             let ends = [(before, passage.before), (next, passage.next)];
             let known = ends
@@ -256,10 +259,16 @@ impl<'s> Search<'s> {
             let value =
                 |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| self.value(problem, at);
             let located = locate_along(problem, newton, self.step, form, options, aim, value)?;
+            // A form may have its value on another part of the branch, too.
+            let way = Step {
+                before,
+                next: &located.point,
+            };
+            let distance = newton.norm().length(before.scale, &way.difference());
             let error = 0.0;
-            Some(Root { located, error })
+            (distance <= farthest).then_some(Root { located, error })
         });
-        found.next()
+        found.collect()
     }
 }
 
