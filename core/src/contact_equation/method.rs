@@ -193,10 +193,6 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
     /// The resolution that the last error asks for.
     fn wanted(&self, point: &Point) -> usize {
         let now = self.run.resolution;
-        // More nodes of nothing change nothing.
-        if self.run.equations.skeleton.forces == 0 {
-            return now;
-        }
         let sizes = point.stability.multipliers.iter().map(|m| m.norm());
         let largest = sizes.fold(1.0, f64::max);
         let asked = self.run.problem.asked.stability;

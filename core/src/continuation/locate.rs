@@ -80,7 +80,11 @@ pub(crate) fn locate_along<P: AsProblem + ?Sized>(
         before: &before.0,
         next: &next.0,
     };
-    let way = Way { arc: &arc, step };
+    let way = Way {
+        arc: &arc,
+        length: arc.at(&next.0.u),
+        step,
+    };
     search_along(problem, newton, way, options, tolerance, &[], test)
 }
 
@@ -94,7 +98,11 @@ fn search<P: AsProblem + ?Sized>(
     test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
     let arc = ArcLength::from(newton, step.before);
-    let way = Way { arc: &arc, step };
+    let way = Way {
+        arc: &arc,
+        length: arc.length(newton, step.before, step.next),
+        step,
+    };
     search_along(problem, newton, way, options, tolerance, others, test)
 }
 
@@ -102,20 +110,21 @@ fn search<P: AsProblem + ?Sized>(
 #[derive(Clone, Copy)]
 struct Way<'w> {
     arc: &'w ArcLength,
+    /// Where the step ends.
+    length: f64,
     step: Step<'w>,
 }
 
 fn search_along<P: AsProblem + ?Sized>(
     problem: &mut P,
     newton: &mut Newton,
-    Way { arc, step }: Way<'_>,
+    Way { arc, length, step }: Way<'_>,
     options: NewtonOptions,
     tolerance: f64,
     others: &[f64],
     mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
     let Step { before: a, next: b } = step;
-    let length = arc.at(&b.u);
     let mut side = |x, point: &CurvePoint| Side {
         place: Place {
             x,

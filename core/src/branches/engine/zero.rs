@@ -226,7 +226,11 @@ impl<'s> Search<'s> {
         let left = |root: &Root| root.located.test.abs();
         let jumps = |root: &Root| !root.located.vanishes && root.located.jump.is_finite();
         let jump = found.as_ref().filter(|root| jumps(root)).map(left);
-        let Some(jump) = jump.filter(|_| !matches!(aim, Aim::Crossing)) else {
+        let is_fold = matches!(
+            (self.change.test, self.change.kind),
+            (Test::Slope, EventKind::Fold)
+        );
+        let Some(jump) = jump.filter(|_| is_fold) else {
             return found;
         };
         let along = self.along_heights(problem, newton).into_iter();
@@ -235,7 +239,7 @@ impl<'s> Search<'s> {
         least.filter(|least| left(least) <= STEEP * jump).or(found)
     }
 
-    /// The same where an extreme goes through its level and the branch bends sharply beside that: what is a jump to the arc length is none to
+    /// The same of a fold, where an extreme goes through its level and the branch bends sharply beside that: what is a jump to the arc length is none to
     /// the height of the extreme, which grows through the touch.
     fn along_heights(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Vec<Root> {
         let Step { before, next } = self.step;
