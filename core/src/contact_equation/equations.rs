@@ -387,7 +387,11 @@ impl Equations {
     fn parameter_column(&mut self, u: &[f64], column: &mut [f64]) {
         let n = self.skeleton.unknowns();
         let value = u[n];
-        let part = DIFFERENCE / (self.turned() / TURNED).max(1.0);
+        let part = if self.set(value) {
+            DIFFERENCE / (self.turned(u) / TURNED).max(1.0)
+        } else {
+            DIFFERENCE
+        };
         let step = part * if value == 0.0 { 1.0 } else { value.abs() };
         let mut beside = u.to_vec();
         column.fill(0.0);
@@ -401,13 +405,13 @@ impl Equations {
         }
     }
 
-    /// The largest angle, or decay, that a configuration of the last pass goes through: what is varied may change as much of it as of itself.
-    fn turned(&self) -> f64 {
-        let intervals = self.skeleton.intervals.iter().zip(&self.passed);
-        let angles = intervals.filter_map(|(interval, passed)| {
+    /// The largest angle, or decay, that a configuration goes through at unknowns: what is varied may change as much of it as of itself.
+    fn turned(&self, u: &[f64]) -> f64 {
+        let angles = self.skeleton.intervals.iter().filter_map(|interval| {
             let of = &self.configurations[interval.configuration?];
             let rates = of.values.linear.blocks.iter().map(Block::rate);
-            let [from, to] = passed.phases;
+            let [from, to] =
+                [interval.from, interval.to].map(|mark| self.skeleton.place(u, mark).phase);
             let time = (to - from).abs() / self.values.base;
             Some(time * rates.fold(0.0, f64::max))
         });

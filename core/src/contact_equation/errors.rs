@@ -13,6 +13,8 @@ use crate::numeric::roots::Place;
 use crate::numeric::spectrum::distance;
 use crate::orbit::observe::Accuracy;
 
+/// Roundings of an output in a configuration.
+const ROUNDINGS: f64 = 8.0;
 /// Phases at which two motions are compared.
 const COMPARED: usize = 24;
 
@@ -80,8 +82,15 @@ impl Run<'_> {
     /// How much of an output is rounding of the states of the last pass.
     pub(super) fn noise(&self, point: &Point) -> f64 {
         match self.accuracy() {
-            Accuracy::Output(_) => {
-                self.changed(point, &self.outputs(&self.equations, point.value, true))
+            Accuracy::Output(output) => {
+                let others = self.outputs(&self.equations, point.value, true);
+                let changed = self.changed(point, &others);
+                if self.equations.configurations.is_empty() {
+                    return changed;
+                }
+                // States of configurations are taken over and given back: twice as many roundings, of which finer equations show none.
+                let own = point.observed.outputs.get(output);
+                2.0 * changed + ROUNDINGS * f64::EPSILON * own.map_or(0.0, Extent::farthest)
             }
             Accuracy::Coordinates | Accuracy::Coordinate(_) => 0.0,
         }
