@@ -13,8 +13,8 @@
 >>> branch = model.response(0.6, 1.6)
 >>> for fold in branch.folds:
 ...     print(fold)
-fold at 1.1445169137 (error 2e-10), peak-to-peak 1.4284049
-fold at 0.6858421 (error 2e-7), peak-to-peak 8.499261
+fold at 1.14451691378816 (error 1e-14), peak-to-peak 1.4284046659
+fold at 0.685842253572 (error 1e-12), peak-to-peak 8.4992561
 
 Names are those of the Rust library. What takes no argument and costs nothing is an attribute. Times have the unit that the equation has
 them in, frequencies are angles per time, and a state is all positions, then all velocities.

@@ -206,7 +206,7 @@ fn method(text: &mut String, options: &Options, branch: &Branch) -> fmt::Result 
     } else {
         writeln!(
             text,
-            "method     {method}, since the {} leads to no such branch",
+            "method     {method}, in place of the {}",
             choice.method()
         )
     }

@@ -259,10 +259,18 @@ impl Follow for Chosen {
         if found.as_ref().is_ok_and(enough) || request.cancel.is_cancelled() {
             return found;
         }
-        let other = self.balance.run(request, visit);
+        // The contact equation finds all that happens; so is the balance to.
+        let balance = if request.stability {
+            self.balance.for_diagram()
+        } else {
+            self.balance
+        };
+        let other = balance.run(request, visit);
         match (found, other) {
-            (Ok(found), Ok(other)) if is_lost(&other) => Ok(found.after(&other)),
-            (Ok(found), Ok(other)) => Ok(other.after(&found)),
+            (Ok(found), Ok(other)) if is_whole(&other) || reach(&other) > reach(&found) => {
+                Ok(other.after(&found))
+            }
+            (Ok(found), Ok(other)) => Ok(found.after(&other)),
             (Ok(found), Err(_)) => Ok(found),
             (Err(_), other) => other,
         }
@@ -293,6 +301,18 @@ fn is_lost(branch: &Branch) -> bool {
         branch.stopped,
         Stop::StepTooShort { .. } | Stop::Motion { .. }
     )
+}
+
+/// Whether a branch ended by itself, and not because somebody or something ended it.
+fn is_whole(branch: &Branch) -> bool {
+    !is_lost(branch) && !branch.stopped.can_be_resumed()
+}
+
+/// How far a branch has come from its first orbit.
+fn reach(branch: &Branch) -> f64 {
+    let values = || branch.points.iter().map(|point| point.value);
+    let first = values().next().unwrap_or(f64::NAN);
+    values().fold(0.0, |most, value| most.max((value - first).abs()))
 }
 
 impl Branch {
