@@ -259,13 +259,7 @@ impl Follow for Chosen {
         if found.as_ref().is_ok_and(enough) || request.cancel.is_cancelled() {
             return found;
         }
-        // The contact equation finds all that happens; so is the balance to.
-        let balance = if request.stability {
-            self.balance.for_diagram()
-        } else {
-            self.balance
-        };
-        let other = balance.run(request, visit);
+        let other = self.balance.run(request, visit);
         match (found, other) {
             (Ok(found), Ok(other)) if is_whole(&other) || reach(&other) > reach(&found) => {
                 Ok(other.after(&found))
