@@ -8,7 +8,7 @@ use super::motion::{GapExtreme, Motion};
 use super::placement::Told;
 use crate::numeric::roots::{self, Place};
 
-/// Samples of a rate in the shortest period of what an interval without forces can do.
+/// Samples of a rate in the shortest period of what an interval without nodes can do.
 const SAMPLES: f64 = 8.0;
 /// The same at least.
 const FEWEST: f64 = 6.0;
