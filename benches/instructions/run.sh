@@ -37,10 +37,9 @@ if ! command -v valgrind >/dev/null; then
     exit 0
 fi
 
-# With the features that the programs of the workspace ask for, and with those of HERTZIAN_FEATURES where they are built with more, so that the
-# runtime is built once for all of them.
+# The laws and what they call, without features of the runtime that other packages ask for.
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$here/../../target}
-(cd "$here/../.." && cargo build --quiet --release --workspace --features "${HERTZIAN_FEATURES:-}" --bin hertzian-instructions)
+(cd "$here/../.." && cargo build --quiet --release -p hertzian-instructions)
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -5,9 +5,9 @@ use std::fs;
 
 use clap::Parser;
 use hertzian_cli::response::progress::Progress;
-use hertzian_cli::work_precision::method::{Family, Setting};
+use hertzian_cli::work_precision::method::{Family, Reference, Setting};
 use hertzian_cli::work_precision::options::Options;
-use hertzian_cli::work_precision::{problem, run};
+use hertzian_cli::work_precision::{peer, problem, run};
 
 #[test]
 fn every_method_is_measured_against_what_is_known() {
@@ -68,4 +68,20 @@ fn every_method_is_measured_against_what_is_known() {
         assert!(folder.join(file).exists(), "{file}");
     }
     fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn every_row_of_other_programs_belongs_to_a_problem_and_is_read() {
+    let reference = Reference {
+        folds: vec![0.75],
+        peak_to_peak: 1.0,
+        state: Vec::new(),
+        multipliers: Vec::new(),
+    };
+    let problems = problem::all();
+    let read: usize = problems
+        .iter()
+        .map(|problem| peer::on(problem, &reference).len())
+        .sum();
+    assert_eq!(read, peer::FILE.lines().count() - 1);
 }

@@ -7,7 +7,11 @@ mod corpus;
 
 use std::env;
 use std::fs;
+use std::iter;
+use std::num::NonZero;
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 use std::time::Instant;
 
 use hertzian_compiler::interpret::{Coefficients, Family};
@@ -89,29 +93,42 @@ fn one_text() {
     );
 }
 
+/// Reads the text of a name in a process of its own; why it failed, if it did.
+fn judged(name: &str, size: &str) -> Option<String> {
+    let output = Command::new(env::current_exe().expect("this program has a path"))
+        .args(["--exact", "one_text", "--nocapture"])
+        .env("HERTZIAN_TEXT", name)
+        .env("HERTZIAN_SIZE", size)
+        .output()
+        .expect("this program runs again");
+    let said = String::from_utf8_lossy(&output.stdout);
+    println!("{name}, {size}: {said}");
+    let why = String::from_utf8_lossy(&output.stderr);
+    let why: String = why.chars().take(300).collect();
+    (!output.status.success())
+        .then(|| format!("{name}, {size} characters: {}, {why}", output.status))
+}
+
 #[test]
 fn large_texts_are_compiled_or_refused_soon() {
     let sizes = env::var("HERTZIAN_SIZES").unwrap_or_else(|_| "5000,1000000".to_owned());
-    let mut failed = Vec::new();
-    for size in sizes.split(',') {
-        for (name, _) in CORPUS {
-            let output = Command::new(env::current_exe().expect("this program has a path"))
-                .args(["--exact", "one_text", "--nocapture"])
-                .env("HERTZIAN_TEXT", name)
-                .env("HERTZIAN_SIZE", size)
-                .output()
-                .expect("this program runs again");
-            let said = String::from_utf8_lossy(&output.stdout);
-            println!("{name}, {size}: {said}");
-            if !output.status.success() {
-                let why = String::from_utf8_lossy(&output.stderr);
-                let why: String = why.chars().take(300).collect();
-                failed.push(format!(
-                    "{name}, {size} characters: {}, {why}",
-                    output.status
-                ));
-            }
-        }
-    }
+    let texts: Vec<_> = sizes
+        .split(',')
+        .flat_map(|size| CORPUS.iter().map(move |(name, _)| (*name, size)))
+        .collect();
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mine = iter::from_fn(|| texts.get(next.fetch_add(1, Ordering::Relaxed)));
+        mine.filter_map(|(name, size)| judged(name, size))
+            .collect::<Vec<_>>()
+    };
+    let failed: Vec<String> = thread::scope(|scope| {
+        let workers = thread::available_parallelism().map_or(1, NonZero::get);
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        let ended = workers
+            .into_iter()
+            .map(|worker| worker.join().expect("it ends"));
+        ended.flatten().collect()
+    });
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }

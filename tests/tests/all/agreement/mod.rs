@@ -280,9 +280,10 @@ fn check_pieces(
         let dual = |by| dual::nodes(data, gap, rate, arguments, by)[data.pieces[piece].force];
         let piece = &data.pieces[piece];
         let by_argument = piece.by_argument.iter().enumerate();
+        let by_gap = dual(dual::By::Gap);
         let expected = [
-            (piece.force, dual(dual::By::Gap).re),
-            (piece.by_gap, dual(dual::By::Gap).eps),
+            (piece.force, by_gap.re),
+            (piece.by_gap, by_gap.eps),
             (piece.by_rate, dual(dual::By::Rate).eps),
         ]
         .into_iter()

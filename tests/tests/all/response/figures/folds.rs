@@ -84,7 +84,7 @@ fn largest(folds: &[Event]) -> &Event {
 #[test]
 fn figure_5a_solves_the_equations_of_galerkin() {
     for (harmonics, omega) in FIGURE_5A_GALERKIN {
-        let folds = FIGURE_5A.folds(|request| request.harmonics(harmonics));
+        let folds = FIGURE_5A.folds_with(Some(harmonics));
         assert_eq!(folds.len(), 2, "{folds:?}");
         let fold = largest(&folds);
         assert!((fold.point.value - omega).abs() < 1e-8, "{fold} {omega}");

@@ -1,5 +1,8 @@
 //! The two oscillators of the paper, and its figures: where each is swept, and what is known of it.
 
+use std::collections::HashMap;
+use std::sync::{Arc, LazyLock, Mutex, OnceLock};
+
 use hertzian::{Event, FrequencyResponse, Stop, System};
 pub use hertzian_tests::{Continuous, OneSided};
 
@@ -91,6 +94,11 @@ pub const FIGURE_5C: Figure = Figure {
     ..FIGURE_5A
 };
 
+/// Folds that were found, by figure and harmonics.
+type Found = Mutex<HashMap<String, Arc<OnceLock<Vec<Event>>>>>;
+
+static FOUND: LazyLock<Found> = LazyLock::new(Found::default);
+
 impl Figure {
     /// Damping ratio: the paper has one for each oscillator.
     pub fn zeta(&self) -> f64 {
@@ -132,12 +140,22 @@ impl Figure {
         folds
     }
 
+    /// The folds with so many harmonics, or at the tolerance alone: several tests judge the same, which are computed once.
+    pub fn folds_with(&self, harmonics: Option<usize>) -> Vec<Event> {
+        let key = format!("{self:?} {harmonics:?}");
+        let found = Arc::clone(FOUND.lock().unwrap().entry(key).or_default());
+        let folds = found.get_or_init(|| {
+            self.folds(|request| match harmonics {
+                Some(harmonics) => request.harmonics(harmonics),
+                None => request,
+            })
+        });
+        folds.clone()
+    }
+
     /// As many folds as are known, with true error and the error stated.
     pub fn errors(&self, harmonics: Option<usize>) -> Vec<(f64, f64)> {
-        let folds = self.folds(|request| match harmonics {
-            Some(harmonics) => request.harmonics(harmonics),
-            None => request,
-        });
+        let folds = self.folds_with(harmonics);
         assert_eq!(
             folds.len(),
             self.folds.len(),

@@ -63,10 +63,7 @@ fn meant<'e>(folds: &'e [Event], exact: &Exact) -> Option<&'e Event> {
 fn of_figure(figure: &Figure) -> (Vec<Row>, usize) {
     let (mut rows, mut missed) = (Vec::new(), 0);
     for harmonics in HARMONICS {
-        let folds = figure.folds(|request| match harmonics {
-            Some(harmonics) => request.harmonics(harmonics),
-            None => request,
-        });
+        let folds = figure.folds_with(harmonics);
         for exact in figure.folds {
             let Some(fold) = meant(&folds, exact) else {
                 println!(
