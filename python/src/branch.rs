@@ -334,6 +334,31 @@ impl PyBranch {
         Ok(PyPoint(PointRef::own(found, Owner::Branch(branch))))
     }
 
+    /// The same branch with every orbit completed, as `complete` does with one: `Branch`. An orbit whose motion cannot be computed stays as
+    /// it is, and so do those that are left when ``progress`` stops it; where none can be, the first reason is raised.
+    #[pyo3(signature = (*, progress=None))]
+    fn complete_all<'py>(
+        &self,
+        py: Python<'py>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let branch = self.held();
+        compute(
+            py,
+            watch(&branch, progress),
+            |_, see| {
+                let mut all = Branch::clone(&branch);
+                let found = all.complete_all_with(see);
+                let lacks = |point: &Point| point.orbit.harmonics() == 0;
+                if all.points.iter().all(lacks) {
+                    found?;
+                }
+                Ok(all)
+            },
+            Self::new,
+        )
+    }
+
     /// The branch that begins at one of its events, by the same method in the same range: `Branch`. ``side`` is ``"one"`` or ``"other"``.
     #[pyo3(signature = (event, side="one", *, progress=None))]
     fn switch<'py>(

@@ -152,6 +152,20 @@ def test_states_of_shooting_and_what_completes_them(one_sided):
     assert complete.observed.motions["x"].rms == pytest.approx(math.hypot(1.0, point.peak_to_peak / math.sqrt(8)))
 
 
+def test_all_orbits_are_completed(one_sided):
+    branch = one_sided.response(1.3, 1.4, by=hertzian.Shooting())
+    seen = []
+    complete = branch.complete_all(progress=seen.append)
+    assert [progress.done for progress in seen] == list(range(1, len(branch.points) + 1))
+    assert {progress.stage for progress in seen} == {"completing"} and seen[0].total == len(branch.points)
+    for before, point in zip(branch.points, complete.points):
+        assert before.observed.motions["x"].rms is None
+        assert point.observed.motions["x"].rms == pytest.approx(math.hypot(1.0, point.peak_to_peak / math.sqrt(8)))
+    # Stopped on the way it has what was completed by then.
+    begun = branch.complete_all(progress=lambda progress: progress.done < 2)
+    assert [point.orbit.harmonics > 0 for point in begun.points] == [True, True] + [False] * (len(branch.points) - 2)
+
+
 def test_a_parameter_is_varied(linear):
     branch = linear.response(1.0, 2.0, vary="drive", omega=1.0, harmonics=1)
     assert branch.varied == "drive"

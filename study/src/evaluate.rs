@@ -117,13 +117,15 @@ impl Of<'_> {
             _ => None,
         };
         match asked.method.or(default) {
-            None => self.by(request, &system),
+            None => self.by(request, &system, cancel),
             Some(Method::Balance) => {
                 let balance = HarmonicBalance::new().bifurcations(asked.bifurcations);
-                self.by(request.by(balance), &system)
+                self.by(request.by(balance), &system, cancel)
             }
-            Some(Method::Shooting) => self.by(request.by(Shooting::new()), &system),
-            Some(Method::ContactEquation) => self.by(request.by(ContactEquation::new()), &system),
+            Some(Method::Shooting) => self.by(request.by(Shooting::new()), &system, cancel),
+            Some(Method::ContactEquation) => {
+                self.by(request.by(ContactEquation::new()), &system, cancel)
+            }
         }
     }
 
@@ -131,12 +133,13 @@ impl Of<'_> {
         &mut self,
         request: FrequencyResponse<M>,
         system: &Valued,
+        cancel: &Cancel,
     ) -> Result<(), Error> {
         match self.study.plan.request.what {
             What::Response => {
                 let branch = request.run()?;
                 self.take(0, &branch)?;
-                self.keep(branch);
+                self.keep(branch, cancel);
             }
             What::Bifurcations => {
                 let diagram = self.bifurcations(request)?;
@@ -145,7 +148,7 @@ impl Of<'_> {
                 }
                 self.omitted(&diagram);
                 for found in diagram.branches {
-                    self.keep(found.branch);
+                    self.keep(found.branch, cancel);
                 }
             }
             What::Solutions => self.solutions(&request, system)?,
@@ -258,11 +261,20 @@ impl Of<'_> {
         }
     }
 
-    /// Keeps a branch, if that is asked for.
-    fn keep(&mut self, branch: Branch) {
-        if self.study.plan.keep.branches {
-            self.found.branches.push(branch);
+    /// Keeps a branch, if that is asked for, with everything that can be read off its orbits: who reads it has no model. Orbits whose
+    /// motion cannot be computed are kept without.
+    fn keep(&mut self, mut branch: Branch, cancel: &Cancel) {
+        if !self.study.plan.keep.branches {
+            return;
         }
+        let _ = branch.complete_all_with(|_| {
+            if cancel.is_cancelled() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        self.found.branches.push(branch);
     }
 
     /// A row for every value: a row of a map, whose second parameter is any that the variant has.

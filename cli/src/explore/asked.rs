@@ -16,6 +16,7 @@ use crate::range::RangeOptions;
 use crate::response::model_file::{self, Varied};
 use crate::response::models;
 use crate::response::options::{By, Options};
+use crate::response::run;
 
 /// Longer periods than this are seldom followed from nothing, and take long.
 const LONGEST_PERIOD: usize = 64;
@@ -186,15 +187,22 @@ impl Asked {
     }
 
     /// The method that is meant.
-    pub fn method(&self, model: &dyn System) -> By {
-        match self.by {
-            Method::Automatic if Choice::of(model) != Choice::HarmonicBalance => {
-                By::ContactEquation
+    ///
+    /// # Errors
+    /// If it makes no options.
+    pub fn method(&self, model: &dyn System) -> Result<By, Fault> {
+        Ok(match self.by {
+            Method::Automatic => {
+                let choice = run::in_range(&self.options(By::Balance)?, model).choice();
+                match choice {
+                    Choice::HarmonicBalance => By::Balance,
+                    _ => By::ContactEquation,
+                }
             }
-            Method::Automatic | Method::Balance => By::Balance,
+            Method::Balance => By::Balance,
             Method::Shooting => By::Shooting,
             Method::ContactEquation => By::ContactEquation,
-        }
+        })
     }
 
     /// The command line that computes the same.

@@ -66,9 +66,9 @@ pub fn of(
         Form::Svg => ("response.svg", picture(traced, plot, scale, cancel)?),
         Form::Csv => (
             "response.csv",
-            files::table(&*traced.model, &traced.written()?).to_csv(),
+            files::table(&*traced.model, &traced.written(cancel)?).to_csv(),
         ),
-        Form::Json => ("response.json", json(traced, &traced.written()?)?),
+        Form::Json => ("response.json", json(traced, &traced.written(cancel)?)?),
         Form::Rust => ("main.rs", rust(traced, texts)?),
     };
     Ok(File { name, contents })

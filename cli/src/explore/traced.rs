@@ -15,7 +15,7 @@ use super::fault::{Fault, Kind};
 use crate::response::bifurcations::Found;
 use crate::response::options::{By, Options};
 use crate::response::progress::{Progress, Seen};
-use crate::response::{bifurcations, covered, run};
+use crate::response::{bifurcations, completed, covered, run};
 
 /// A pixel of a picture that is some five hundred of them high.
 const PIXEL: f64 = 2e-3;
@@ -64,16 +64,18 @@ impl Traced {
         self.options.by.unwrap_or(By::Balance)
     }
 
-    /// All branches as they are written to files, with everything that is read off their orbits.
+    /// All branches as they are written to files, with everything that can be read off their orbits.
     ///
     /// # Errors
-    /// If the motion of an orbit cannot be computed.
-    pub fn written(&self) -> Result<Vec<Branch>, Error> {
-        let Some((first, found)) = &self.followed else {
-            return Ok(self.branches().cloned().collect());
-        };
-        let further = found.branches()?;
-        Ok(std::iter::once(first.clone()).chain(further).collect())
+    /// If it is cancelled.
+    pub fn written(&self, cancel: &Cancel) -> Result<Vec<Branch>, Fault> {
+        let first = self.followed.iter().map(|(first, _)| first);
+        let mut branches: Vec<Branch> = first.chain(self.branches()).cloned().collect();
+        completed::all(&mut branches, cancel, |_| ());
+        if cancel.is_cancelled() {
+            return Err(Fault::cancelled());
+        }
+        Ok(branches)
     }
 
     /// The branches that are drawn.
@@ -133,7 +135,7 @@ pub fn trace(
     let method = match (effort, asked.by) {
         // Few digits are cheapest by few harmonics.
         (Effort::Screen, Method::Automatic) => By::Balance,
-        _ => asked.method(&*model),
+        _ => asked.method(&*model)?,
     };
     let one = |method: By| -> Result<(Options, Diagram), Fault> {
         let mut options = asked.options(method)?;

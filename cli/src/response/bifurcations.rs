@@ -186,18 +186,9 @@ impl Found {
         Ok(())
     }
 
-    /// The branches, with everything that is read off their orbits.
-    ///
-    /// # Errors
-    /// If the motion of an orbit cannot be computed.
-    pub fn branches(&self) -> Result<Vec<Branch>, Error> {
-        let completed = |found: &DiagramBranch| {
-            let mut branch = found.branch.clone();
-            let points = branch.points.iter().map(|point| branch.complete(point));
-            branch.points = points.collect::<Result<_, _>>()?;
-            Ok(branch)
-        };
-        self.diagram.branches.iter().map(completed).collect()
+    /// The branches.
+    pub fn branches(&self) -> impl Iterator<Item = &Branch> {
+        self.diagram.branches.iter().map(|found| &found.branch)
     }
 
     /// The picture: of the curves in two parameters if there are any, of the branches otherwise.

@@ -3,6 +3,7 @@
 pub mod backbone;
 pub mod bifurcations;
 pub mod boundary;
+pub mod completed;
 pub mod covered;
 pub mod files;
 pub mod model_file;

@@ -91,24 +91,35 @@ impl<'p> Seen<'p> {
 
     /// Something was done; it goes on.
     pub fn see(&mut self, done: hertzian::Progress<'_>) -> ControlFlow<()> {
+        self.show(done);
+        ControlFlow::Continue(())
+    }
+
+    /// Something was done.
+    pub fn show(&mut self, done: hertzian::Progress<'_>) {
         let value = done.value.unwrap_or(self.from);
+        let (count, varied) = (done.done, &self.varied);
         match (done.stage, done.total) {
-            (Stage::Settling, Some(total)) => {
-                let varied = &self.varied;
-                let motions = done.done;
-                self.progress
-                    .update(|| format!("{motions} of {total} motions, {varied} = {value:.6}"));
-            }
+            (Stage::Settling, Some(total)) => self
+                .progress
+                .update(|| format!("{count} of {total} motions, {varied} = {value:.6}")),
+            (Stage::Completing, Some(total)) => self
+                .progress
+                .update(|| format!("{count} of {total} orbits read off, {varied} = {value:.6}")),
+            (Stage::Again, _) => self.count(value, " by the balance"),
             _ => self.at(value),
         }
-        ControlFlow::Continue(())
     }
 
     /// A point more, at a value.
     pub fn at(&mut self, value: f64) {
+        self.count(value, "");
+    }
+
+    fn count(&mut self, value: f64, how: &str) {
         self.points += 1;
         let (points, varied) = (self.points, &self.varied);
         self.progress
-            .update(|| format!("{points} points, {varied} = {value:.6}"));
+            .update(|| format!("{points} points, {varied} = {value:.6}{how}"));
     }
 }

@@ -15,6 +15,7 @@ use hertzian::{
 use super::backbone::{self, Backbone};
 use super::bifurcations;
 use super::boundary::loss_of_contact;
+use super::completed;
 use super::covered;
 use super::files::{self, Record};
 use super::model_file::{ModelError, Varied};
@@ -164,7 +165,7 @@ pub fn run(
     let mut further = covered::summary(&diagram, options.varied());
     let mut tracks = Vec::new();
     if let Some(found) = found {
-        branches.extend(found.branches()?);
+        branches.extend(found.branches().cloned());
         further = found.summary(options.varied());
         warnings.extend(found.warnings);
         tracks = found.tracks;
@@ -175,12 +176,10 @@ pub fn run(
     let (sensitivities, underived) = sensitive::found(options, &branches, cancel, &mut seen);
     let all_derived = underived.is_none();
     warnings.extend(underived);
-    if options.method().is_none() && (options.csv.is_some() || options.json.is_some()) {
-        // Files have a column for everything, whatever the method that was chosen.
-        for branch in &mut branches {
-            let incomplete = branch.complete_all().err();
-            warnings.extend(incomplete.map(|error| chain(&error).to_string()));
-        }
+    if options.csv.is_some() || options.json.is_some() {
+        // Files have a column for everything, whatever the method.
+        let see = |progress: hertzian::Progress<'_>| seen.show(progress);
+        warnings.extend(completed::all(&mut branches, cancel, see));
     }
     let reduction = match &reduced {
         Some(reduced) => Some(reduced.of(&branches)?),

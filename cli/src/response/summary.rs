@@ -5,9 +5,10 @@ use std::path::Path;
 
 use hertzian::chart::Chart;
 use hertzian::export::Decimal;
-use hertzian::{Branch, Choice, Event, EventKind, Point, System, Verdict};
+use hertzian::{Branch, Event, EventKind, Point, System, Verdict};
 
 use super::options::Options;
+use super::run::in_range;
 use super::value::of_varied;
 use crate::model::ModelOptions;
 
@@ -200,7 +201,7 @@ fn method(text: &mut String, options: &Options, branch: &Branch) -> fmt::Result 
     let Some((method, system)) = followed else {
         return Ok(());
     };
-    let choice = Choice::of(system);
+    let choice = in_range(options, system).choice();
     if choice.method() == method {
         writeln!(text, "method     {choice}")
     } else {

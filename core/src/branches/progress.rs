@@ -66,6 +66,11 @@ pub enum Stage {
     FirstOrbit,
     /// It follows a branch of orbits: points.
     Branch,
+    /// It follows the branch once more by the harmonic balance, since the contact equation that was [chosen](crate::Chosen) led no further:
+    /// points.
+    Again,
+    /// It reads everything off the orbits of a branch that is there: orbits.
+    Completing,
     /// It follows a curve of bifurcations in two parameters, or a backbone: points.
     Curve,
     /// It lets motions settle, value by value: values.
@@ -85,6 +90,8 @@ impl std::fmt::Display for Stage {
         f.write_str(match self {
             Self::FirstOrbit => "first orbit",
             Self::Branch => "branch",
+            Self::Again => "branch by the harmonic balance",
+            Self::Completing => "completing",
             Self::Curve => "curve",
             Self::Sweep => "sweep",
             Self::Basin => "basin",

@@ -12,7 +12,7 @@ use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::point::{Event, Point};
-use crate::branches::progress::Progress;
+use crate::branches::progress::{Progress, Stage};
 use crate::branches::request::{Guess, Request};
 use crate::branches::stability::Stability;
 use crate::error::Error;
@@ -165,12 +165,38 @@ impl Branch {
     /// ```
     ///
     /// # Errors
-    /// As of [`complete`](Self::complete), at the first orbit where it fails; those before it are completed.
+    /// As of [`complete`](Self::complete), at the first orbit where it fails; all others are completed.
     pub fn complete_all(&mut self) -> Result<(), Error> {
+        self.complete_all_with(|_| ControlFlow::Continue(()))
+    }
+
+    /// As [`complete_all`](Self::complete_all), and calls `visit` at every orbit: to show progress, or to stop with those that are completed
+    /// by then.
+    ///
+    /// # Errors
+    /// As [`complete_all`](Self::complete_all).
+    pub fn complete_all_with(
+        &mut self,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<(), Error> {
+        let total = Some(self.points.len());
+        let mut failed = Ok(());
         for index in 0..self.points.len() {
-            self.points[index] = self.complete(&self.points[index])?;
+            match self.complete(&self.points[index]) {
+                Ok(completed) => self.points[index] = completed,
+                Err(error) => failed = failed.and(Err(error)),
+            }
+            let point = &self.points[index];
+            let progress = Progress {
+                total,
+                point: Some(point),
+                ..Progress::at(Stage::Completing, index + 1, point.value)
+            };
+            if visit(progress).is_break() {
+                break;
+            }
         }
-        Ok(())
+        failed
     }
 
     /// Gives a branch that was read from a file its model back, so that it can compute further orbits: by the method that followed it,

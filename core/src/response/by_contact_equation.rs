@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::by_shooting;
 use super::following::{Following, begin};
+use super::otherwise::Otherwise;
 use super::sealed::Follow;
 use crate::branches::branch::{Branch, Further};
 use crate::branches::point::{Event, Point};
@@ -36,15 +37,7 @@ impl Follow for ContactEquation {
     }
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
-        let (range, problem) = self.problem(request)?;
-        let first = by_shooting::with_series(request, range[0])?;
-        begin(request, || further(request, *self, None))?;
-        let guesses = Guesses {
-            first: &first,
-            better: &mut || self.shooting().orbit(request, range[0]),
-        };
-        let followed = compute::branch(&problem, guesses, range, visit)?;
-        Ok(with_request(followed, request, *self))
+        run(request, *self, None, visit)
     }
 
     fn switch(
@@ -81,6 +74,27 @@ impl ContactEquation {
     }
 }
 
+/// The branch from one end of the range to the other, and what is tried where it leads no further.
+///
+/// # Errors
+/// If the request is not usable, there is no contact equation of the system, or no first orbit.
+pub(super) fn run(
+    request: &Request,
+    equation: ContactEquation,
+    otherwise: Option<Otherwise>,
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    let (range, problem) = equation.problem(request)?;
+    let first = by_shooting::with_series(request, range[0])?;
+    begin(request, || further(request, equation, None, otherwise))?;
+    let guesses = Guesses {
+        first: &first,
+        better: &mut || equation.shooting().orbit(request, range[0]),
+    };
+    let followed = compute::branch(&problem, guesses, range, visit)?;
+    Ok(with_request(followed, request, equation, otherwise))
+}
+
 /// Goes on with a branch that was interrupted.
 ///
 /// # Errors
@@ -88,29 +102,40 @@ impl ContactEquation {
 pub(super) fn resume(
     request: &Request,
     equation: ContactEquation,
-    branch: &Branch,
-    rest: &Rest,
+    otherwise: Option<Otherwise>,
+    (branch, rest): (&Branch, &Rest),
     visit: See<'_>,
 ) -> Result<Branch, Error> {
     let (range, problem) = equation.problem(request)?;
-    begin(request, || further(request, equation, None))?;
+    begin(request, || further(request, equation, None, otherwise))?;
     let followed = compute::resume(&problem, branch, rest, range, visit)?;
-    Ok(with_request(followed, request, equation))
+    Ok(with_request(followed, request, equation, otherwise))
 }
 
-fn with_request(followed: Followed, request: &Request, equation: ContactEquation) -> Branch {
+fn with_request(
+    followed: Followed,
+    request: &Request,
+    equation: ContactEquation,
+    otherwise: Option<Otherwise>,
+) -> Branch {
     Branch {
-        further: further(request, equation, followed.rest),
+        further: further(request, equation, followed.rest, otherwise),
         ..followed.branch
     }
 }
 
 /// What it takes to go on with a branch.
-fn further(request: &Request, equation: ContactEquation, rest: Option<Box<Rest>>) -> Further {
+pub(super) fn further(
+    request: &Request,
+    equation: ContactEquation,
+    rest: Option<Box<Rest>>,
+    otherwise: Option<Otherwise>,
+) -> Further {
     let following = Following::ContactEquation {
         request: request.afterwards(),
         equation,
         rest,
+        otherwise,
     };
     Further::of(Arc::clone(&request.system), Arc::new(following))
 }

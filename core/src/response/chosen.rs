@@ -11,16 +11,14 @@
 use std::fmt;
 
 use super::following;
+use super::otherwise::Either;
 use super::sealed::Follow;
-use crate::balance::Parity;
-use crate::balance_branch::check::Asked;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::Branch;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::request::Request;
 use crate::contact_equation::ContactEquation;
-use crate::continuation::stop::Stop;
 use crate::error::Error;
 use crate::event::Side;
 use crate::law::{Law, LawFacts, On, PieceFacts, Quantity, Variation};
@@ -28,7 +26,7 @@ use crate::laws::single::Single;
 use crate::model;
 use crate::model::layout::Layout;
 use crate::orbit::observe::Accuracy;
-use crate::system::System;
+use crate::system::{System, Variable};
 
 /// The frequency at which laws are looked at. It is in none but through a coefficient of time in units of its own.
 const FREQUENCY: f64 = 1.0;
@@ -88,11 +86,38 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// For a system, by its laws at the values that its parameters have now.
+    /// For a system, by its laws at the values that its parameters have now. Where one of them is varied,
+    /// [`FrequencyResponse::choice`](crate::FrequencyResponse::choice) looks at the range.
     pub fn of(system: &dyn System) -> Self {
+        Self::at(system, &model::values(system), FREQUENCY)
+    }
+
+    /// For a request, by laws at both ends of what it varies: a force that is smooth at one end, as where two stiffnesses are the same or an
+    /// exponent is above one, may have a corner on the way to the other.
+    pub(super) fn within(request: &Request) -> Self {
+        let system = request.system.as_ref();
+        let Some(ends) = request.from.zip(request.to) else {
+            return Self::of(system);
+        };
+        let mut values = request.parameters();
+        let mut at = |end: f64| match request.variable() {
+            Ok(Variable::Parameter(index)) => {
+                values[index] = end;
+                Self::at(system, &values, request.omega.unwrap_or(FREQUENCY))
+            }
+            _ => Self::at(system, &values, end),
+        };
+        match at(ends.0) {
+            Self::HarmonicBalance => at(ends.1),
+            found => found,
+        }
+    }
+
+    /// By laws at values of the parameters and at a frequency.
+    fn at(system: &dyn System, values: &[f64], omega: f64) -> Self {
         let layout = Layout::of(system);
         let mut coefficients = vec![0.0; layout.coefficients];
-        system.coefficients(&model::values(system), FREQUENCY, &mut coefficients);
+        system.coefficients(values, omega, &mut coefficients);
         let choice = layout.contacts.iter().find_map(|contact| {
             let law = system.law(contact.law);
             let mut arguments = vec![0.0; contact.argument_count];
@@ -192,39 +217,34 @@ impl Chosen {
         }
     }
 
-    /// The contact equation, where that is chosen.
-    fn equation(&self, request: &Request) -> Option<ContactEquation> {
+    /// The contact equation, where that is chosen, and the balance that is tried besides.
+    fn either(&self, request: &Request) -> Option<Either> {
         let accuracy = self.balance.accuracy;
         // More nodes do not resolve an output that vanishes but for rounding, and as many as there may be are asked for.
         let of_output = matches!(accuracy, Accuracy::Output(_));
-        let chosen = !self.by_balance
-            && !of_output
-            && Choice::of(request.system.as_ref()) != Choice::HarmonicBalance;
-        chosen.then(|| ContactEquation::new().accurate_in(accuracy))
-    }
-
-    /// Whether orbits have a symmetry that they may lose on a branch: the contact equation sees that by multipliers alone.
-    fn may_break(&self, request: &Request) -> bool {
-        let asked = Asked::of(request, &self.balance);
-        asked.check().is_ok_and(|(context, _)| {
-            let resolution = context.resolution;
-            resolution.parity == Parity::Odd || resolution.stride > 1
+        let chosen =
+            !self.by_balance && !of_output && Choice::within(request) != Choice::HarmonicBalance;
+        chosen.then(|| {
+            // With multipliers the contact equation finds all that happens.
+            let balance = if request.stability {
+                self.balance.for_diagram()
+            } else {
+                self.balance
+            };
+            Either::of(ContactEquation::new().accurate_in(accuracy), balance)
         })
     }
 
-    /// What the contact equation finds where it is chosen, or else the balance.
-    fn either<T>(
+    /// What the methods find that fit, or the balance alone.
+    fn by_these<T>(
         &self,
         request: &Request,
-        mut find: impl FnMut(&dyn Follow) -> Result<T, Error>,
+        find: impl FnOnce(&dyn Follow) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        if let Some(equation) = self.equation(request) {
-            let found = find(&equation);
-            if found.is_ok() || request.cancel.is_cancelled() {
-                return found;
-            }
+        match self.either(request) {
+            Some(either) => find(&either),
+            None => find(&self.balance),
         }
-        find(&self.balance)
     }
 }
 
@@ -249,25 +269,7 @@ impl Follow for Chosen {
     }
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
-        let unseen = || !request.stability && self.may_break(request);
-        let Some(equation) = self.equation(request).filter(|_| !unseen()) else {
-            return self.balance.run(request, visit);
-        };
-        let found = equation.run(request, &mut *visit);
-        // What is kept in a file is there already.
-        let enough = |branch: &Branch| !is_lost(branch) || request.keep.is_some();
-        if found.as_ref().is_ok_and(enough) || request.cancel.is_cancelled() {
-            return found;
-        }
-        let other = self.balance.run(request, visit);
-        match (found, other) {
-            (Ok(found), Ok(other)) if is_whole(&other) || reach(&other) > reach(&found) => {
-                Ok(other.after(&found))
-            }
-            (Ok(found), Ok(other)) => Ok(found.after(&other)),
-            (Ok(found), Err(_)) => Ok(found),
-            (Err(_), other) => other,
-        }
+        self.by_these(request, |method| method.run(request, visit))
     }
 
     fn switch(
@@ -277,44 +279,10 @@ impl Follow for Chosen {
         side: Side,
         visit: See<'_>,
     ) -> Result<Branch, Error> {
-        self.either(request, |method| {
-            method.switch(request, event, side, &mut *visit)
-        })
+        self.by_these(request, |method| method.switch(request, event, side, visit))
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
-        self.either(request, |method| {
-            method.through(request, value, &mut *visit)
-        })
-    }
-}
-
-/// Whether a branch ended because nothing further was found.
-fn is_lost(branch: &Branch) -> bool {
-    matches!(
-        branch.stopped,
-        Stop::StepTooShort { .. } | Stop::Motion { .. }
-    )
-}
-
-/// Whether a branch ended by itself, and not because somebody or something ended it.
-fn is_whole(branch: &Branch) -> bool {
-    !is_lost(branch) && !branch.stopped.can_be_resumed()
-}
-
-/// How far a branch has come from its first orbit.
-fn reach(branch: &Branch) -> f64 {
-    let values = || branch.points.iter().map(|point| point.value);
-    let first = values().next().unwrap_or(f64::NAN);
-    values().fold(0.0, |most, value| most.max((value - first).abs()))
-}
-
-impl Branch {
-    /// The same with what another one cost that was followed in vain.
-    fn after(mut self, vain: &Self) -> Self {
-        self.statistics += vain.statistics;
-        self.work += vain.work;
-        self.elapsed += vain.elapsed;
-        self
+        self.by_these(request, |method| method.through(request, value, visit))
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::both_ways::BothWays;
+use super::otherwise::{Either, Otherwise};
 use super::sealed::Follow;
 use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
@@ -36,6 +37,8 @@ pub(super) enum Following {
         request: Request,
         equation: ContactEquation,
         rest: Option<Box<contact_equation::Rest>>,
+        /// What is tried where it leads no further; nothing where the contact equation was asked for.
+        otherwise: Option<Otherwise>,
     },
 }
 
@@ -51,6 +54,14 @@ pub(super) fn by_any(
             follow(&balance.bifurcations(wanted))
         }
         Following::Shooting { shooting, .. } => follow(shooting),
+        Following::ContactEquation {
+            equation,
+            otherwise: Some(Otherwise { balance, .. }),
+            ..
+        } => {
+            let wanted = bifurcations.unwrap_or(balance.bifurcations);
+            follow(&Either::of(*equation, balance.bifurcations(wanted)))
+        }
         Following::ContactEquation { equation, .. } => follow(equation),
     }
 }

@@ -8,6 +8,7 @@ mod by_shooting;
 mod chosen;
 mod following;
 mod multipliers;
+mod otherwise;
 mod reading;
 #[cfg(feature = "serde")]
 mod request_in_file;
@@ -145,6 +146,32 @@ impl FrequencyResponse {
 
         /// By the balance, and as [`HarmonicBalance::symmetric`].
         symmetric(wanted: bool) { self.method = self.method.balanced(|balance| balance.symmetric(wanted)) }
+    }
+}
+
+impl FrequencyResponse {
+    /// What laws say of the method that fits, in the range that is asked for; an option of the balance, or
+    /// [accuracy of an output](Self::accuracy_of), asks for the balance whatever they say.
+    ///
+    /// ```
+    /// use hertzian::{Choice, FrequencyResponse};
+    ///
+    /// hertzian::oscillator! {
+    ///     Spring(x) {
+    ///         param pulled = 1.0 > 0;
+    ///         law spring(gap) { gap > 0 => gap, else => pulled*gap }
+    ///         ddot(x) + 0.1*dot(x) + spring(x) = 0.3*cos(omega*t);
+    ///     }
+    /// }
+    ///
+    /// let spring = Spring::default();
+    /// assert_eq!(Choice::of(&spring), Choice::HarmonicBalance);
+    /// let request = FrequencyResponse::of(&spring).vary("pulled").omega(1.0);
+    /// let choice = request.from(1.0).to(4.0).choice();
+    /// assert_eq!(choice.to_string(), "contact equation, since law `spring` has a corner");
+    /// ```
+    pub fn choice(&self) -> Choice {
+        Choice::within(&self.request)
     }
 }
 

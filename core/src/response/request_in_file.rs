@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::both_ways::BothWays;
 use super::following::{Following, Left};
+use super::otherwise::Otherwise;
 use crate::balance::resolution::Chooser;
 use crate::balance::{Parity, Resolution};
 use crate::balance_branch::check::Asked;
@@ -46,6 +47,8 @@ enum Method {
     ContactEquation {
         options: ContactEquation,
         rest: Option<Box<contact_equation::Rest>>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        otherwise: Option<Otherwise>,
     },
 }
 
@@ -94,9 +97,15 @@ impl Following {
                         both_ways,
                     }
                 }
-                Self::ContactEquation { equation, rest, .. } => Method::ContactEquation {
+                Self::ContactEquation {
+                    equation,
+                    rest,
+                    otherwise,
+                    ..
+                } => Method::ContactEquation {
                     options: *equation,
                     rest: rest.clone(),
+                    otherwise: *otherwise,
                 },
             },
         }
@@ -151,12 +160,14 @@ impl Following {
             Method::ContactEquation {
                 options: equation,
                 rest,
+                otherwise,
             } => {
                 equation.problem(&request)?;
                 Ok(Self::ContactEquation {
                     request,
                     equation,
                     rest,
+                    otherwise,
                 })
             }
         }

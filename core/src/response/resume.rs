@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::both_ways::{begins_at, is_left};
 use super::following::{Following, Left, by_any};
+use super::otherwise::{Either, Otherwise};
 use super::sealed::Follow;
 use super::{by_balance, by_contact_equation, by_shooting};
 use crate::balance_branch::check::Asked;
@@ -213,6 +214,18 @@ impl Resume<'_> {
         visit: See<'_>,
     ) -> Result<Branch, Error> {
         let branch = self.branch;
+        if let Following::ContactEquation {
+            equation,
+            otherwise:
+                Some(Otherwise {
+                    balance,
+                    lost: Some(stopped),
+                }),
+            ..
+        } = following
+        {
+            return self.by_balance(request, Either::of(*equation, *balance), *stopped, visit);
+        }
         let mut resumed = match following {
             Following::Balance {
                 context,
@@ -248,14 +261,46 @@ impl Resume<'_> {
             Following::ContactEquation {
                 equation,
                 rest: Some(rest),
+                otherwise,
                 ..
-            } => by_contact_equation::resume(request, *equation, branch, rest, visit)?,
+            } => {
+                let known = (branch, rest.as_ref());
+                let resumed = by_contact_equation::resume(
+                    request,
+                    *equation,
+                    *otherwise,
+                    known,
+                    &mut *visit,
+                )?;
+                or_otherwise(following, request, Ok(resumed), visit)?
+            }
             _ => return self.beyond(following, request, visit),
         };
         resumed.statistics += branch.statistics;
         resumed.work += branch.work;
         resumed.elapsed += branch.elapsed;
         Ok(resumed)
+    }
+
+    /// What the balance finds in place of a branch by the contact equation that ended so, or is left of it.
+    ///
+    /// # Errors
+    /// If what is kept cannot be begun with again.
+    fn by_balance(
+        &self,
+        request: &Request,
+        either: Either,
+        stopped: Stop,
+        visit: See<'_>,
+    ) -> Result<Branch, Error> {
+        let lost = Branch {
+            stopped,
+            ..self.branch.clone()
+        };
+        if let Some(keep) = &request.keep {
+            keep.begin(&lost.model, &lost.varied, &lost.further)?;
+        }
+        either.beyond(request, lost, visit)
     }
 
     /// The branch with what follows behind its last orbit.
@@ -296,17 +341,24 @@ impl Resume<'_> {
             }
             .into());
         }
+        let whole = Request {
+            to: Some(to),
+            ..request.clone()
+        };
         let request = Request {
             from: Some(last.value),
-            to: Some(to),
             near: Some(Guess::Orbit(last.orbit.clone())),
             period: Some(last.orbit.period),
             max_points: request.max_points.saturating_sub(has - 1).max(2),
-            ..request.clone()
+            ..whole.clone()
         };
-        let run = |method: &dyn Follow| method.run(&request, &mut *visit);
-        let on = by_any(following, None, run)?;
-        Ok(self.branch.with(on))
+        let on = match following {
+            // The balance is not tried for a part of the branch.
+            Following::ContactEquation { equation, .. } => equation.run(&request, &mut *visit),
+            _ => by_any(following, None, |method| method.run(&request, &mut *visit)),
+        };
+        let longer = on.map(|on| self.branch.with(on));
+        or_otherwise(following, &whole, longer, visit)
     }
 
     /// Why there is nothing to go on to.
@@ -375,5 +427,25 @@ impl Resume<'_> {
         };
         let run = |method: &dyn Follow| method.run(&request, &mut *visit);
         by_any(following, self.bifurcations, run)
+    }
+}
+
+/// A branch, or what is tried where the contact equation led no further on it.
+///
+/// # Errors
+/// Those of the balance, where there is no branch.
+fn or_otherwise(
+    following: &Following,
+    request: &Request,
+    found: Result<Branch, Error>,
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    match following {
+        Following::ContactEquation {
+            equation,
+            otherwise: Some(Otherwise { balance, .. }),
+            ..
+        } => Either::of(*equation, *balance).or_balance(request, found, visit),
+        _ => found,
     }
 }
