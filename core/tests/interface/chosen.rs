@@ -1,9 +1,14 @@
 //! The method that is chosen where none is asked for, and what comes of it.
 
+use std::ops::ControlFlow;
+
 use hertzian::system::System;
 use hertzian::{
-    Branch, Choice, ContactEquation, EventKind, FrequencyResponse, HarmonicBalance, Verdict,
+    Branch, Choice, ContactEquation, EventKind, FrequencyResponse, HarmonicBalance, Shooting, Side,
+    Stage, Stop, Verdict,
 };
+
+use crate::resumed::{texts, written_and_read};
 
 hertzian::oscillator! {
     /// Figure 5a of Wang et al. (2021).
@@ -40,6 +45,13 @@ hertzian::oscillator! {
         law mesh(gap) { gap > 0 => 2*gap, else => gap }
         ddot(x) + 0.1*(dot(x) - dot(y)) + mesh(x - y) = 0.1*cos(omega*t);
         ddot(y) + 0.1*(dot(y) - dot(x)) - mesh(x - y) = 0;
+    }
+}
+
+hertzian::oscillator! {
+    Two(x, y) {
+        ddot(x) + 0.1*dot(x) + 2*x - y = 0.1*cos(omega*t);
+        ddot(y) + 0.1*dot(y) + 2*y - x = 0;
     }
 }
 
@@ -139,6 +151,73 @@ fn no_broken_symmetry_is_lost() {
     assert_eq!(without.method(), Some("harmonic balance"));
 }
 
+/// So it is of branches both ways, and of those that begin at an event.
+#[test]
+fn no_broken_symmetry_is_lost_both_ways() {
+    let request = FrequencyResponse::of(&Stops {}).from(0.45).to(0.3);
+    let with = request.clone().through(0.4).expect("a branch");
+    let quick = request.stability(false);
+    let without = quick.through(0.4).expect("a branch");
+    let found = [&with, &without].map(|branch| branch.events(EventKind::SymmetryBreaking).count());
+    assert!(found[0] > 0 && found[0] == found[1], "{found:?}");
+    assert_eq!(without.method(), Some("harmonic balance"));
+    // Nothing is left that could break on the branch that begins there.
+    let event = with.events(EventKind::SymmetryBreaking).next();
+    let other = quick.switch(event.expect("an event"), Side::One);
+    assert_eq!(other.expect("a branch").method(), Some("shooting"));
+}
+
+/// What a law is at both ends of the range counts, and not what it is now.
+#[test]
+fn the_range_of_a_parameter_tells_the_method() {
+    let contact = "contact equation";
+    let balance = "harmonic balance";
+    for (now, range, method) in [
+        (1.5, [1.5, 0.8], contact),
+        (1.5, [0.8, 1.5], contact),
+        (0.8, [1.5, 1.2], balance),
+        (1.5, [1.5, 1.2], balance),
+    ] {
+        let request = FrequencyResponse::of(&Power { alpha: now }).vary("alpha");
+        let request = request.omega(0.6).from(range[0]).to(range[1]);
+        assert_eq!(request.choice().method(), method, "{now} {range:?}");
+        let branch = request.run().expect("a branch");
+        assert_eq!(branch.method(), Some(method), "{now} {range:?}");
+    }
+}
+
+/// An orbit that cannot be completed costs no other one.
+#[test]
+fn all_others_are_completed() {
+    let mut branch = followed(&OneSided {});
+    let states = FrequencyResponse::of(&Two {}).by(Shooting::new());
+    let states = states.from(0.6).to(0.7).run().expect("a branch");
+    branch.points[3] = states.points[0].clone();
+    let error = branch.complete_all().expect_err("one is of another system");
+    assert!(error.to_string().contains("state"), "{error}");
+    for (index, point) in branch.points.iter().enumerate() {
+        assert_eq!(point.orbit.harmonics() > 0, index != 3);
+    }
+    let mut begun = followed(&OneSided {});
+    let mut seen = Vec::new();
+    let stopped = begun.complete_all_with(|progress| {
+        seen.push((progress.stage, progress.done, progress.total));
+        if progress.done < 2 {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    });
+    stopped.expect("nothing failed");
+    let total = Some(begun.points.len());
+    assert_eq!(seen, [1, 2].map(|done| (Stage::Completing, done, total)));
+    let completed = begun
+        .points
+        .iter()
+        .filter(|point| point.orbit.harmonics() > 0);
+    assert_eq!(completed.count(), 2);
+}
+
 #[test]
 fn a_branch_is_resumed_by_what_followed_it() {
     let request = FrequencyResponse::of(&OneSided {}).from(0.6).to(1.4);
@@ -147,4 +226,138 @@ fn a_branch_is_resumed_by_what_followed_it() {
     let resumed = part.resume().max_points(20_000).run().expect("the rest");
     assert_eq!(resumed.method(), Some("contact equation"));
     assert!(resumed.points == whole.points);
+}
+
+hertzian::oscillator! {
+    /// The contact equation is lost where the gap touches zero, at few digits; the law of what is far away chooses it.
+    Touching(x) {
+        law spring(gap) { gap > 0 => gap^1.5, else => -(-gap)^1.5 }
+        law far(gap) { gap > 0 => gap, else => 0 }
+        ddot(x) + 0.064*dot(x) + spring(x) + far(x - 100) = 0.1*cos(omega*t) + 1;
+    }
+}
+
+fn touching() -> FrequencyResponse {
+    let request = FrequencyResponse::of(&Touching {}).tolerance(1e-4);
+    request.from(0.6).to(1.6)
+}
+
+/// Stopped when so many points were seen, by the method that is tried first or by the one that is tried then.
+fn interrupted(request: &FrequencyResponse, stage: Stage, points: usize) -> Branch {
+    let part = request.run_with(|progress| {
+        if progress.stage == stage && progress.done >= points {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    part.expect("a part")
+}
+
+/// It is interrupted while the contact equation leads on, and while the balance is behind it and ahead of it.
+const INTERRUPTED: [(Stage, usize); 4] = [
+    (Stage::Branch, 30),
+    (Stage::Again, 1),
+    (Stage::Again, 20),
+    (Stage::Again, 100),
+];
+
+#[test]
+fn a_branch_that_is_resumed_has_the_balance_to_fall_back_on() {
+    let request = touching();
+    let whole = request.run().expect("a branch");
+    assert_eq!(whole.stopped, Stop::ReachedEnd);
+    for (stage, points) in INTERRUPTED {
+        let part = interrupted(&request, stage, points);
+        assert_eq!(part.stopped, Stop::Interrupted, "{stage} {points}");
+        let mut read = written_and_read(&part, "touching");
+        read.attach(&Touching {}).expect("its model");
+        for part in [part, read] {
+            let resumed = part.resume().run().expect("a branch");
+            assert_eq!(resumed.method(), whole.method());
+            assert!(texts(&resumed) == texts(&whole), "{stage} {points}");
+        }
+    }
+    // A limit is that of each of both.
+    for points in [20, 80, 100] {
+        let part = request.clone().max_points(points).run().expect("a part");
+        assert_eq!(part.stopped, Stop::PointLimit { points });
+        let resumed = part.resume().max_points(1000).run().expect("a branch");
+        assert!(texts(&resumed) == texts(&whole), "{points}");
+    }
+    // What is followed beyond its range is followed anew where it is lost there.
+    let short = request.clone().to(1.0).run().expect("a branch");
+    let longer = short.resume().to(1.6).run().expect("a branch");
+    assert_eq!(longer.stopped, Stop::ReachedEnd);
+    let [longer, whole] = [longer, whole].map(|branch| branch.folds().count());
+    assert_eq!(longer, whole);
+}
+
+#[test]
+fn a_branch_that_is_kept_has_the_balance_to_fall_back_on() {
+    let name = format!("hertzian-touching-{}.json", std::process::id());
+    let path = std::env::temp_dir().join(name);
+    let request = touching();
+    let whole = request.run().expect("a branch");
+    let kept = request.clone().keep(&path);
+    let ended = kept.run().expect("a branch");
+    assert!(texts(&ended) == texts(&whole));
+    assert_eq!(Branch::read(&path).expect("read"), ended);
+    for (stage, points) in INTERRUPTED {
+        let mut killed = None;
+        let part = kept.run_with(|progress| {
+            let last = progress.stage == stage && progress.done >= points;
+            if last {
+                killed = std::fs::read(&path).ok();
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        });
+        assert_eq!(Branch::read(&path).expect("read"), part.expect("a part"));
+        let ended = std::fs::read(&path).expect("a file");
+        // As it has ended, and as it is where the program is killed at that moment.
+        for text in [Some(ended), killed].into_iter().flatten() {
+            std::fs::write(&path, text).expect("written");
+            let mut read = Branch::read(&path).expect("read");
+            read.attach(&Touching {}).expect("its model");
+            let resumed = read.resume().keep(&path).run().expect("a branch");
+            assert!(texts(&resumed) == texts(&whole), "{stage} {points}");
+            assert_eq!(Branch::read(&path).expect("read"), resumed);
+        }
+    }
+    std::fs::remove_file(path).expect("removed");
+}
+
+/// Orbits are counted once for each method.
+#[test]
+fn progress_says_that_the_balance_is_tried() {
+    let mut seen = Vec::new();
+    let whole = touching().run_with(|progress| {
+        seen.push((progress.stage, progress.done));
+        ControlFlow::Continue(())
+    });
+    let (method, count) = whole
+        .map(|branch| (branch.method(), branch.points.len()))
+        .expect("a branch");
+    assert_eq!(method, Some("harmonic balance"));
+    let first = seen.iter().take_while(|(stage, _)| *stage == Stage::Branch);
+    let first = first.count();
+    let [found, again] = [1..=first, 1..=count].map(Iterator::collect::<Vec<usize>>);
+    let done: Vec<usize> = seen.iter().map(|(_, done)| *done).collect();
+    assert!(first > 0 && done == [found, again].concat());
+    assert!(
+        seen[first..]
+            .iter()
+            .all(|(stage, _)| *stage == Stage::Again)
+    );
+}
+
+/// It looks for what the contact equation would find.
+#[test]
+fn the_balance_that_is_tried_finds_all_events() {
+    let tried = touching().run().expect("a branch");
+    let balance = HarmonicBalance::new().bifurcations(true);
+    let asked = touching().by(balance).run().expect("a branch");
+    let [tried, asked] = [tried, asked].map(|branch| texts(&branch));
+    assert!(tried == asked);
 }

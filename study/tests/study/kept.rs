@@ -6,7 +6,9 @@ use std::path::Path;
 
 use crate::common::{Folder as Temporary, study, unprepared};
 use hertzian::Cancel;
-use hertzian_study::{Folder, Part, Plan, Prepared, Ran, Runner};
+use hertzian_study::{
+    Folder, Keep, Part, Plan, Prepared, Ran, Request, Runner, Spread, Study, Variants,
+};
 
 const COUNT: usize = 30;
 
@@ -208,4 +210,37 @@ fn what_cannot_be_written_loses_nothing_else() {
     fs::remove_dir(path.join("blocks/00000003.csv")).expect("removed");
     let ran = run(&study, &path, Part::WHOLE, 1);
     assert_eq!((ran.before, ran.computed), (12, COUNT - 12));
+}
+
+hertzian::oscillator! {
+    /// It is followed by the contact equation, which has no means.
+    Stopped(x) {
+        param k = 10 > 0;
+        law stop(gap) { gap > 0 => k*gap, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x - 1) = 0.3*cos(omega*t);
+    }
+}
+
+/// Who reads a branch that was kept has no model that it could be completed with.
+#[test]
+fn branches_that_are_kept_have_everything() {
+    let folder = Temporary::new("branches");
+    let mut keep = Keep::new();
+    keep.branches = true;
+    let study = Study::of(&Stopped::default())
+        .variants(Variants::sobol(2).over("k", Spread::uniform(8.0, 12.0)))
+        .request(Request::response(0.8, 0.9))
+        .keep(keep)
+        .prepare()
+        .expect("a study");
+    let path = folder.join("kept");
+    run(&study, &path, Part::WHOLE, 1);
+    for variant in 0..2 {
+        let file = path.join(format!("branches/{variant:08}-0.json"));
+        let branch = hertzian::Branch::read(file).expect("a branch");
+        assert_eq!(branch.method(), Some("contact equation"));
+        for point in &branch.points {
+            assert!(point.motion().rms.is_some() && point.observed.contacts.len() == 1);
+        }
+    }
 }

@@ -8,7 +8,7 @@ use hertzian_cli::response::run::run;
 use serde_json::Value;
 
 use super::{all, check_csv, check_point, coarse, numbers, options, points, run_with};
-use crate::cancels::CancelsWhereWritten;
+use crate::cancels::{CancelsAt, CancelsWhereWritten};
 use crate::folder::Folder;
 
 #[test]
@@ -96,6 +96,66 @@ fn a_curve_is_followed_by_every_method() {
     for size in sizes {
         assert!((size / sizes[0] - 1.0).abs() < 1e-6, "{sizes:?}");
     }
+}
+
+/// What takes the whole motion is in tables by every method, whether that was chosen or asked for.
+#[test]
+fn tables_have_every_column_by_every_method() {
+    let folder = Folder::new("columns");
+    let (svg, csv) = (folder.file("a.svg"), folder.file("a.csv"));
+    let command = ["--alpha", "1", "--from", "0.8", "--to", "0.85"];
+    let files = ["--one-branch", "--svg", &svg, "--csv", &csv];
+    let methods = ["", "balance", "shooting", "contact-equation"];
+    let firsts = methods.map(|by| {
+        let by = if by.is_empty() {
+            vec![]
+        } else {
+            vec!["--by", by]
+        };
+        run_with(&[&command[..], &files, &by].concat()).expect("a branch");
+        let mut table = csv::Reader::from_path(&csv).expect("a table");
+        let names = table.headers().expect("names").clone();
+        let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a row")).collect();
+        let columns = ["mean", "rms", "contact_fraction", "peak_force", "harmonics"];
+        let of = |name: &str| names.iter().position(|own| own == name).expect("a column");
+        for (row, name) in rows.iter().flat_map(|row| columns.map(|name| (row, name))) {
+            assert!(!row[of(name)].is_empty(), "{by:?}: {name} in {row:?}");
+        }
+        ["mean", "rms", "peak_force"]
+            .map(|name| rows[0][of(name)].parse::<f64>().expect("a number"))
+    });
+    for (first, by) in firsts.iter().zip(methods) {
+        for (number, balanced) in first.iter().zip(firsts[1]) {
+            assert!((number / balanced - 1.0).abs() < 1e-4, "{by}: {first:?}");
+        }
+    }
+}
+
+/// Ctrl-C while orbits are read off for files ends that, and what is there is written.
+#[test]
+fn an_interrupt_ends_what_files_need() {
+    let folder = Folder::new("read-off");
+    let [svg, json] = ["a.svg", "a.json"].map(|name| folder.file(name));
+    let command = ["--alpha", "1", "--to", "0.7", "--one-branch"];
+    let arguments = options(&[&command[..], &["--svg", &svg, "--json", &json]].concat());
+    let now = Cancel::new();
+    let mut progress = Progress::to(CancelsAt(now.clone(), "3 of "));
+    let outcome = run(&arguments, &now, &mut progress).expect("a branch");
+    let read = hertzian::Branch::read(&json).expect("a branch");
+    assert_eq!(read.stopped, hertzian::Stop::ReachedEnd);
+    let series = read.points.iter().map(|point| point.orbit.harmonics() > 0);
+    let left = read.points.len() - 3;
+    let expected = [true; 3]
+        .into_iter()
+        .chain(std::iter::repeat_n(false, left));
+    assert!(series.eq(expected) && !outcome.complete);
+    let said = format!("of {left} orbits of branch 0 files lack");
+    assert!(
+        outcome
+            .warnings
+            .iter()
+            .any(|warning| warning.contains(&said))
+    );
 }
 
 #[test]
