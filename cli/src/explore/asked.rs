@@ -66,7 +66,7 @@ fn once() -> usize {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// As [`Choice`] has it: by the contact equation where a law opens or has a corner, else by the balance.
+    /// As [`Choice`] has it: by the contact equation where a law opens or has a corner in the range, else by the balance.
     #[default]
     Automatic,
     /// Harmonic balance.
@@ -193,7 +193,7 @@ impl Asked {
     pub fn method(&self, model: &dyn System) -> Result<By, Fault> {
         Ok(match self.by {
             Method::Automatic => {
-                let choice = run::in_range(&self.options(By::Balance)?, model).choice();
+                let choice = run::request(&self.options(By::Balance)?, model).choice();
                 match choice {
                     Choice::HarmonicBalance => By::Balance,
                     _ => By::ContactEquation,

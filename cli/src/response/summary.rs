@@ -8,7 +8,7 @@ use hertzian::export::Decimal;
 use hertzian::{Branch, Event, EventKind, Point, System, Verdict};
 
 use super::options::Options;
-use super::run::in_range;
+use super::run::request;
 use super::value::of_varied;
 use crate::model::ModelOptions;
 
@@ -201,7 +201,7 @@ fn method(text: &mut String, options: &Options, branch: &Branch) -> fmt::Result 
     let Some((method, system)) = followed else {
         return Ok(());
     };
-    let choice = in_range(options, system).choice();
+    let choice = request(options, system).choice();
     if choice.method() == method {
         writeln!(text, "method     {choice}")
     } else {

@@ -2,8 +2,8 @@
 //!
 //! Where a force sets in at a level of its gap, or has a corner there, its harmonics fall off as a low power of their number. The contact
 //! equation has forces as unknowns on each stretch between two crossings, on which they are smooth. A force that is continuous with its
-//! derivatives, as an odd power above one, has harmonics that fall off faster, and few of them are few unknowns. So laws alone tell which
-//! method is quicker; what was measured is in DESIGN.md.
+//! derivatives, as an odd power above one, has harmonics that fall off faster, and few of them are few unknowns, unless many digits are asked
+//! for. So laws and the tolerance tell which method is quicker; what was measured is in DESIGN.md.
 //!
 //! The contact equation has no equation for a system that nothing holds, may miss a first orbit, and may end where its equations fit no
 //! further orbit. There the balance is tried, which was asked for every branch before there was a choice.
@@ -22,8 +22,7 @@ use crate::contact_equation::ContactEquation;
 use crate::error::Error;
 use crate::event::Side;
 use crate::law::{Law, LawFacts, On, PieceFacts, Quantity, Variation};
-use crate::laws::single::Single;
-use crate::model;
+use crate::laws::single::{self, Single};
 use crate::model::layout::Layout;
 use crate::orbit::observe::Accuracy;
 use crate::system::{System, Variable};
@@ -34,10 +33,15 @@ const FREQUENCY: f64 = 1.0;
 const RATES: [f64; 2] = [0.0, 1.0];
 /// Limits that differ by this part of their size are the same.
 const ROUNDED: f64 = 1e-12;
+/// From this tolerance on higher derivatives count as well.
+const MANY_DIGITS: f64 = 1e-8;
+/// Where forces of two pieces are compared beside their level, in units of the gap and of the level.
+const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 
 /// The method that fits the system, which a [`FrequencyResponse`](crate::FrequencyResponse) uses unless another one is
 /// [asked for](crate::FrequencyResponse::by): the [contact equation](ContactEquation) where a law opens, that is has a piece without force, or
-/// has a corner or a jump at a level, and the [harmonic balance](HarmonicBalance) where every force is smooth. Where the contact equation has no equations for the
+/// has a corner or a jump at a level, and the [harmonic balance](HarmonicBalance) where every force is smooth. At a tolerance of 1e-8 or below it
+/// is the contact equation wherever a force is another function on the other side of a level. Where the contact equation has no equations for the
 /// system, finds no first orbit or leads no further, the balance is tried: [`Branch::method`] says what a branch was followed by.
 ///
 /// One orbit by itself is one of the balance, which the contact equation would begin with.
@@ -83,52 +87,66 @@ pub enum Choice {
         /// Whether the law has a piece without force. Otherwise it has a corner or a jump at a level.
         opens: bool,
     },
+    /// Every force is smooth, one is another function on the other side of a level, and so many digits are asked for that this matters.
+    ToManyDigits {
+        /// Name of the first law of which it is one.
+        law: String,
+    },
 }
 
 impl Choice {
-    /// For a system, by its laws at the values that its parameters have now. Where one of them is varied,
-    /// [`FrequencyResponse::choice`](crate::FrequencyResponse::choice) looks at the range.
+    /// For a system, by its laws at the values that its parameters have now, and by the tolerance that is the default.
+    /// [`FrequencyResponse::choice`](crate::FrequencyResponse::choice) knows the range of what is varied, and the tolerance.
     pub fn of(system: &dyn System) -> Self {
-        Self::at(system, &model::values(system), FREQUENCY)
+        Self::within(&Request::of(system))
     }
 
     /// For a request, by laws at both ends of what it varies: a force that is smooth at one end, as where two stiffnesses are the same or an
     /// exponent is above one, may have a corner on the way to the other.
     pub(super) fn within(request: &Request) -> Self {
         let system = request.system.as_ref();
-        let Some(ends) = request.from.zip(request.to) else {
-            return Self::of(system);
-        };
         let mut values = request.parameters();
+        let omega = request.omega.unwrap_or(FREQUENCY);
         let mut at = |end: f64| match request.variable() {
             Ok(Variable::Parameter(index)) => {
                 values[index] = end;
-                Self::at(system, &values, request.omega.unwrap_or(FREQUENCY))
+                Self::at(system, &values, omega, request.tolerance)
             }
-            _ => Self::at(system, &values, end),
+            _ => Self::at(system, &values, end, request.tolerance),
         };
-        match at(ends.0) {
-            Self::HarmonicBalance => at(ends.1),
+        let Some((from, to)) = request.from.zip(request.to) else {
+            return Self::at(system, &request.parameters(), omega, request.tolerance);
+        };
+        match at(from) {
+            Self::HarmonicBalance => at(to),
             found => found,
         }
     }
 
     /// By laws at values of the parameters and at a frequency.
-    fn at(system: &dyn System, values: &[f64], omega: f64) -> Self {
+    fn at(system: &dyn System, values: &[f64], omega: f64, tolerance: f64) -> Self {
         let layout = Layout::of(system);
         let mut coefficients = vec![0.0; layout.coefficients];
         system.coefficients(values, omega, &mut coefficients);
-        let choice = layout.contacts.iter().find_map(|contact| {
-            let law = system.law(contact.law);
-            let mut arguments = vec![0.0; contact.argument_count];
-            contact.arguments(&coefficients, &mut arguments);
-            let opens = opens(law.facts());
-            let found = opens || has_corner(law, &arguments);
-            found.then(|| Self::ContactEquation {
-                law: law.facts().name.to_string(),
-                opens,
+        let name = |law: &dyn Law| law.facts().name.to_string();
+        let choose = |find: &dyn Fn(&dyn Law, &[f64]) -> Option<Self>| {
+            layout.contacts.iter().find_map(|contact| {
+                let mut arguments = vec![0.0; contact.argument_count];
+                contact.arguments(&coefficients, &mut arguments);
+                find(system.law(contact.law), &arguments)
             })
-        });
+        };
+        let rough = |law: &dyn Law, arguments: &[f64]| {
+            let opens = opens(law.facts());
+            let found = opens || has_corner(law, arguments);
+            let law = name(law);
+            found.then_some(Self::ContactEquation { law, opens })
+        };
+        let changes = |law: &dyn Law, arguments: &[f64]| {
+            let found = tolerance <= MANY_DIGITS && changes(law, arguments);
+            found.then(|| Self::ToManyDigits { law: name(law) })
+        };
+        let choice = choose(&rough).or_else(|| choose(&changes));
         choice.unwrap_or(Self::HarmonicBalance)
     }
 
@@ -136,7 +154,7 @@ impl Choice {
     pub fn method(&self) -> &'static str {
         match self {
             Self::HarmonicBalance => following::BALANCE,
-            Self::ContactEquation { .. } => following::EQUATION,
+            Self::ContactEquation { .. } | Self::ToManyDigits { .. } => following::EQUATION,
         }
     }
 }
@@ -171,6 +189,24 @@ fn has_corner(law: &dyn Law, arguments: &[f64]) -> bool {
     })
 }
 
+/// Whether a force is another function on the other side of a level: one that is the same there has no harmonics for it.
+fn changes(law: &dyn Law, arguments: &[f64]) -> bool {
+    let mut levels = vec![0.0; law.facts().levels.len()];
+    law.levels(arguments, &mut levels);
+    levels.iter().enumerate().any(|(index, level)| {
+        let unit = level.abs().max(1.0);
+        let places = BESIDE
+            .iter()
+            .flat_map(|part| RATES.map(|rate| (part, rate)));
+        places.into_iter().any(|(part, rate)| {
+            let at = [level + part * unit, rate];
+            let [below, above] =
+                [index, index + 1].map(|piece| single::force(law, On::Piece(piece), arguments, at));
+            differ(below, above)
+        })
+    })
+}
+
 /// Whether a derivative by the gap is unbounded on a side of a level.
 fn is_unbounded(law: &LawFacts, level: usize, arguments: &[f64]) -> bool {
     let below = law.pieces[level].terms.iter();
@@ -199,6 +235,10 @@ impl fmt::Display for Choice {
             Self::ContactEquation { law, opens: false } => {
                 write!(f, "{method}, since law `{law}` has a corner")
             }
+            Self::ToManyDigits { law } => write!(
+                f,
+                "{method}, since law `{law}` has a level that matters to so many digits"
+            ),
         }
     }
 }

@@ -4,6 +4,9 @@
 //! kept. So whatever interrupts it, it goes on to what an uninterrupted run gives: by the contact equation as long as that is not lost,
 //! then by a balance from the first orbit on, and by the same balance where that has come farther already.
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::by_contact_equation;

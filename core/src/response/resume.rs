@@ -214,18 +214,6 @@ impl Resume<'_> {
         visit: See<'_>,
     ) -> Result<Branch, Error> {
         let branch = self.branch;
-        if let Following::ContactEquation {
-            equation,
-            otherwise:
-                Some(Otherwise {
-                    balance,
-                    lost: Some(stopped),
-                }),
-            ..
-        } = following
-        {
-            return self.by_balance(request, Either::of(*equation, *balance), *stopped, visit);
-        }
         let mut resumed = match following {
             Following::Balance {
                 context,
@@ -234,7 +222,7 @@ impl Resume<'_> {
                 ..
             } => {
                 let asked = Asked::of(request, balance);
-                by_balance::resume(asked, context.as_ref().clone(), branch, rest, visit)?
+                by_balance::resume(asked, context.as_ref().clone(), branch, rest, &mut *visit)?
             }
             Following::Balance {
                 balance,
@@ -243,20 +231,28 @@ impl Resume<'_> {
             } if is_left(branch) => {
                 self.unkept()?;
                 let asked = Asked::of(request, balance);
-                by_balance::both_ways(asked, Some(branch), both, visit)?
+                by_balance::both_ways(asked, Some(branch), both, &mut *visit)?
             }
             Following::Shooting {
                 shooting,
                 rest: Left::OneWay(rest),
                 ..
-            } => by_shooting::resume(request, *shooting, branch, rest, visit)?,
+            } => by_shooting::resume(request, *shooting, branch, rest, &mut *visit)?,
             Following::Shooting {
                 shooting,
                 rest: Left::BothWays(both),
                 ..
             } if is_left(branch) => {
                 self.unkept()?;
-                by_shooting::both_ways(request, *shooting, Some(branch), both, visit)?
+                by_shooting::both_ways(request, *shooting, Some(branch), both, &mut *visit)?
+            }
+            Following::ContactEquation {
+                equation,
+                otherwise: Some(otherwise),
+                ..
+            } if otherwise.lost.is_some() => {
+                let either = Either::of(*equation, otherwise.balance);
+                return self.by_balance(request, either, otherwise.lost, visit);
             }
             Following::ContactEquation {
                 equation,
@@ -265,17 +261,11 @@ impl Resume<'_> {
                 ..
             } => {
                 let known = (branch, rest.as_ref());
-                let resumed = by_contact_equation::resume(
-                    request,
-                    *equation,
-                    *otherwise,
-                    known,
-                    &mut *visit,
-                )?;
-                or_otherwise(following, request, Ok(resumed), visit)?
+                by_contact_equation::resume(request, *equation, *otherwise, known, &mut *visit)?
             }
             _ => return self.beyond(following, request, visit),
         };
+        resumed = or_otherwise(following, request, Ok(resumed), visit)?;
         resumed.statistics += branch.statistics;
         resumed.work += branch.work;
         resumed.elapsed += branch.elapsed;
@@ -290,11 +280,11 @@ impl Resume<'_> {
         &self,
         request: &Request,
         either: Either,
-        stopped: Stop,
+        stopped: Option<Stop>,
         visit: See<'_>,
     ) -> Result<Branch, Error> {
         let lost = Branch {
-            stopped,
+            stopped: stopped.unwrap_or(self.branch.stopped),
             ..self.branch.clone()
         };
         if let Some(keep) = &request.keep {

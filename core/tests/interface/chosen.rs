@@ -79,6 +79,27 @@ fn laws_tell_the_method() {
     }
 }
 
+/// To many digits a force that is another function on the other side of a level has many harmonics.
+#[test]
+fn the_tolerance_tells_the_method() {
+    let contact = "contact equation, since law `spring` has a level that matters to so many digits";
+    let balance = "harmonic balance, since every force is smooth";
+    for (system, tolerance, said) in [
+        (&Power { alpha: 1.5 } as &dyn System, 1e-7, balance),
+        (&Power { alpha: 1.5 }, 1e-8, contact),
+        (&Power { alpha: 1.0 }, 1e-10, balance),
+        (&Power { alpha: 3.0 }, 1e-10, balance),
+        (&Power { alpha: 2.0 }, 1e-10, contact),
+        (&Duffing {}, 1e-10, balance),
+    ] {
+        let request = FrequencyResponse::of(system).tolerance(tolerance);
+        assert_eq!(request.choice().to_string(), said);
+        let branch = request.from(0.9).to(0.95).run().expect("a branch");
+        let method = branch.method().expect("a method");
+        assert!(said.starts_with(method), "{method}");
+    }
+}
+
 /// The folds of Wang et al. (2021), figure 5a, computed apart from this project.
 #[test]
 fn a_contact_that_opens_has_folds_to_nine_digits() {
