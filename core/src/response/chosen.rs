@@ -189,7 +189,8 @@ fn has_corner(law: &dyn Law, arguments: &[f64]) -> bool {
     })
 }
 
-/// Whether a force is another function on the other side of a level: one that is the same there has no harmonics for it.
+/// Whether a force is another function on the other side of a level: one that is the same there has no harmonics for it. Beyond its piece a power
+/// whose exponent is a parameter has no value that could be compared, and counts as another one.
 fn changes(law: &dyn Law, arguments: &[f64]) -> bool {
     let mut levels = vec![0.0; law.facts().levels.len()];
     law.levels(arguments, &mut levels);

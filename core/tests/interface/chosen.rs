@@ -55,6 +55,14 @@ hertzian::oscillator! {
     }
 }
 
+hertzian::oscillator! {
+    /// One function, in two pieces.
+    Cube(x) {
+        law spring(gap) { gap > 0 => gap^3, else => -(-gap)^3 }
+        ddot(x) + 0.05*dot(x) + spring(x) = 0.1*cos(omega*t);
+    }
+}
+
 fn followed(system: &dyn System) -> Branch {
     let request = FrequencyResponse::of(system).from(0.6).to(1.4);
     request.run().expect("a branch")
@@ -87,9 +95,8 @@ fn the_tolerance_tells_the_method() {
     for (system, tolerance, said) in [
         (&Power { alpha: 1.5 } as &dyn System, 1e-7, balance),
         (&Power { alpha: 1.5 }, 1e-8, contact),
-        (&Power { alpha: 1.0 }, 1e-10, balance),
-        (&Power { alpha: 3.0 }, 1e-10, balance),
         (&Power { alpha: 2.0 }, 1e-10, contact),
+        (&Cube {}, 1e-10, balance),
         (&Duffing {}, 1e-10, balance),
     ] {
         let request = FrequencyResponse::of(system).tolerance(tolerance);
