@@ -128,25 +128,29 @@ impl Choice {
         let layout = Layout::of(system);
         let mut coefficients = vec![0.0; layout.coefficients];
         system.coefficients(values, omega, &mut coefficients);
-        let name = |law: &dyn Law| law.facts().name.to_string();
-        let choose = |find: &dyn Fn(&dyn Law, &[f64]) -> Option<Self>| {
-            layout.contacts.iter().find_map(|contact| {
+        let contacts: Vec<(&dyn Law, Vec<f64>)> = (layout.contacts.iter())
+            .map(|contact| {
                 let mut arguments = vec![0.0; contact.argument_count];
                 contact.arguments(&coefficients, &mut arguments);
-                find(system.law(contact.law), &arguments)
+                (system.law(contact.law), arguments)
             })
-        };
-        let rough = |law: &dyn Law, arguments: &[f64]| {
-            let opens = opens(law.facts());
-            let found = opens || has_corner(law, arguments);
-            let law = name(law);
+            .collect();
+        let rough = contacts.iter().find_map(|(law, arguments)| {
+            let facts = law.facts();
+            let opens = opens(facts);
+            let found = opens || has_corner(*law, arguments);
+            let law = facts.name.to_string();
             found.then_some(Self::ContactEquation { law, opens })
-        };
-        let changes = |law: &dyn Law, arguments: &[f64]| {
-            let found = tolerance <= MANY_DIGITS && changes(law, arguments);
-            found.then(|| Self::ToManyDigits { law: name(law) })
-        };
-        let choice = choose(&rough).or_else(|| choose(&changes));
+        });
+        let mut changing = contacts.iter().filter(|(law, arguments)| {
+            // Nothing is computed for that where it does not matter.
+            tolerance <= MANY_DIGITS && changes(*law, arguments)
+        });
+        let choice = rough.or_else(|| {
+            let (law, _) = changing.next()?;
+            let law = law.facts().name.to_string();
+            Some(Self::ToManyDigits { law })
+        });
         choice.unwrap_or(Self::HarmonicBalance)
     }
 
