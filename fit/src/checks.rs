@@ -1,6 +1,6 @@
 //! What data and free parameters must be.
 
-use hertzian::observe::Wanted;
+use hertzian::observe::{Measure, Wanted};
 use hertzian::{Model, System};
 
 use crate::data::{DataSet, Deviations, Sweep};
@@ -189,6 +189,9 @@ fn names(set: &DataSet, system: &dyn System, model: &Model) -> Result<(), String
         .parse()
         .map_err(|error: hertzian::RequestError| error.to_string())?;
     model.check(&wanted).map_err(|error| error.to_string())?;
+    if wanted.measure == Measure::Impacts {
+        return Err("a number of impacts is whole: it has no derivative to fit by".to_owned());
+    }
     let parameters = &system.facts().parameters;
     let known = |name: &str| parameters.iter().find(|facts| facts.name == name);
     if set.varied == "omega" {

@@ -6,17 +6,22 @@
 //! A = S + 2 p   where deviations are known,     A = n log(S / n) + 2 p   where they are not                  (1)
 //! ```
 //!
-//! and a fit with `q` parameters less than the first is tested by `S' - S`, which is distributed as chi-square with `q` degrees of freedom where
-//! deviations are known, and otherwise by the ratio `F = (S' - S) (n - p) / (q S)`.
+//! where of a robust loss `S` is the sum of what residuals count, by the scale of the first fit for all, over the square of its scatter, and
+//! `A = S + 2 p`. A fit with `q` parameters less than the first is tested by `S' - S`, which is distributed as chi-square with `q` degrees
+//! of freedom where deviations are known, and otherwise by the ratio `F = (S' - S) (n - p) / (q S)`.
 //!
-//! Source: Seber and Wild (1989), Nonlinear Regression, section 5.3; Akaike (1974), IEEE Transactions on Automatic Control 19, 716.
+//! Source: Seber and Wild (1989), Nonlinear Regression, section 5.3; Akaike (1974), IEEE Transactions on Automatic Control 19, 716; Ronchetti
+//! (1985), Statistics and Probability Letters 3, 21 (robust losses).
 
 use std::fmt;
 
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
+use crate::fit::Loss;
+use crate::minimise::{counted, square};
 use crate::result::Fitted;
+use crate::search::spread;
 use crate::statistics::exceeds;
 
 /// A fit beside others.
@@ -47,13 +52,16 @@ pub struct Comparison {
 impl Comparison {
     /// Of fits of the same data, with names: the first has what the others leave out.
     pub fn of(fits: &[(&str, &Fitted)]) -> Self {
+        let Some((_, first)) = fits.first() else {
+            return Self { fits: Vec::new() };
+        };
         let criterion = |fit: &Fitted| {
             let penalty = 2.0 * fit.estimates.len() as f64;
-            let n = (fit.degrees + fit.estimates.len()) as f64;
-            if fit.is_absolute {
-                fit.chi_square + penalty
-            } else {
-                n * (fit.chi_square / n).max(f64::MIN_POSITIVE).ln() + penalty
+            let n = fit.count as f64;
+            match robust(first, fit) {
+                Some(sum) => sum + penalty,
+                None if fit.is_absolute => fit.chi_square + penalty,
+                None => n * (fit.chi_square / n).max(f64::MIN_POSITIVE).ln() + penalty,
             }
         };
         let best = fits
@@ -68,12 +76,32 @@ impl Comparison {
                 parameters: fit.estimates.len(),
                 chi_square: fit.chi_square,
                 criterion: criterion(fit) - best,
-                probability: (index > 0).then(|| tested(fits[0].1, fit)).flatten(),
+                probability: (index > 0).then(|| tested(first, fit)).flatten(),
             });
         Self {
             fits: compared.collect(),
         }
     }
+}
+
+/// What the residuals of a fit count by a robust loss, in squares of the scatter of the first of all; nothing by squares.
+fn robust(first: &Fitted, fit: &Fitted) -> Option<f64> {
+    let loss = first.asked.loss;
+    if loss == Loss::Squares {
+        return None;
+    }
+    let scale = if first.is_absolute {
+        1.0
+    } else {
+        spread(&first.all_residuals())
+    };
+    let sum = square(&counted(loss, scale, &fit.all_residuals()).0);
+    let by = if first.is_absolute {
+        1.0
+    } else {
+        first.scatter
+    };
+    Some(sum / (by * by))
 }
 
 /// How probable the difference of two fits is.
@@ -83,11 +111,19 @@ fn tested(full: &Fitted, less: &Fitted) -> Option<f64> {
         .len()
         .checked_sub(less.estimates.len())
         .filter(|count| *count > 0)?;
-    let more = (less.chi_square - full.chi_square).max(0.0);
+    let robust = [less, full].map(|fit| robust(full, fit));
+    let [more, own] = match robust {
+        // By the square of the scatter, which has the degrees of freedom in it.
+        [Some(less), Some(own)] => [(less - own).max(0.0), full.degrees as f64],
+        _ => [
+            (less.chi_square - full.chi_square).max(0.0),
+            full.chi_square,
+        ],
+    };
     if full.is_absolute {
         return Some(exceeds(more, left_out));
     }
-    let ratio = more * full.degrees as f64 / (left_out as f64 * full.chi_square);
+    let ratio = more * full.degrees as f64 / (left_out as f64 * own);
     let distribution = FisherSnedecor::new(left_out as f64, full.degrees as f64).ok()?;
     ratio.is_finite().then(|| distribution.sf(ratio))
 }

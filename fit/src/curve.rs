@@ -286,6 +286,12 @@ fn slopes(
         let name = wanted.to_string();
         let mut measured = found.measured.iter();
         let measured = measured.find(|measured| measured.name == name)?;
+        // One that is another one to each side is no number.
+        measured
+            .by
+            .iter()
+            .all(|slope| slope.value.is_finite())
+            .then_some(())?;
         let mut by = measured.by.iter().map(|slope| slope.value);
         let place = by.next()?;
         let mut slopes = vec![0.0; problem.unknowns.len()];

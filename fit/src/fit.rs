@@ -105,6 +105,8 @@ pub struct Fit {
     pub(crate) starts: usize,
     pub(crate) loss: Loss,
     pub(crate) cancel: Cancel,
+    /// Where unknowns begin, by their names, if not at the values of the system.
+    pub(crate) begins: Vec<(String, f64)>,
 }
 
 impl Fit {
@@ -117,6 +119,7 @@ impl Fit {
             starts: 8,
             loss: Loss::default(),
             cancel: Cancel::new(),
+            begins: Vec::new(),
         }
     }
 
@@ -159,17 +162,12 @@ impl Fit {
         self
     }
 
-    /// The same from other estimates: the values of its system are these, and nothing else is tried.
+    /// The same from other estimates, those of each data set's own parameters among them, in the same ranges; nothing else is tried.
     pub(crate) fn from(&self, fitted: &Fitted) -> Self {
-        let mut values = checks::values_of(&self.system);
-        for (place, facts) in self.system.facts().parameters.iter().enumerate() {
-            let named = fitted.estimate(&facts.name);
-            values[place] = named.map_or(values[place], |estimate| estimate.value);
-        }
-        let system: Arc<dyn System> = Arc::new(Valued::new(&self.system, values));
+        let begins = fitted.estimates.iter();
         Self {
-            system,
             starts: 1,
+            begins: begins.map(|own| (own.name.clone(), own.value)).collect(),
             ..self.clone()
         }
     }
@@ -233,7 +231,7 @@ impl Fit {
         &self,
         mut told: impl FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Fitted, FitError> {
-        let problem = Problem::new(self)?;
-        search::run(&problem, &mut told)
+        let mut problem = Problem::new(self)?;
+        search::run(&mut problem, &mut told)
     }
 }

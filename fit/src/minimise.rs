@@ -378,7 +378,7 @@ impl MPFitter for Search<'_, '_> {
                 .ok_or(MPError::Eval)?
         };
         let jacobian = match trial.jacobian(problem) {
-            Ok(jacobian) => jacobian,
+            Ok(jacobian) => jacobian.matrix,
             Err(reason) => {
                 self.trials.note(&format!("no derivatives: {reason}"));
                 return Err(MPError::Eval);

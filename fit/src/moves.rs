@@ -84,6 +84,10 @@ fn moved(
     } = of;
     let branch = path.branch;
     if let Some(event) = path.nodes[node].event {
+        if !path.nodes[node].turns {
+            // Its two sides move each in its own way.
+            return Err("a corner of the curve".to_owned());
+        }
         let (_, [_, dy]) = path.at(path.along[node]);
         let by = curve.fold_slopes(problem, branch, event)?;
         return Ok(by.iter().map(|by| -dy * by).collect());

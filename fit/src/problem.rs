@@ -10,6 +10,8 @@ use crate::checks;
 use crate::data::{DataSet, Jump, Sweep};
 use crate::error::FitError;
 use crate::fit::{Fit, Free, Loss};
+use crate::minimise::square;
+use crate::search::spread;
 
 /// Starts are looked for down to this part of a value, and up to its inverse, where no range is given.
 const AROUND: f64 = 1.0 / 3.0;
@@ -19,6 +21,10 @@ const FAR: f64 = 30.0;
 const MARGIN: f64 = 0.05;
 /// A range that begins above zero and ends so many times higher is spread evenly by its logarithm.
 const WIDE: f64 = 8.0;
+/// Deviations that are found are not below this part of the largest value.
+const ROUNDED: f64 = 1e-7;
+/// They have settled where they change by less than this part.
+const SETTLED: f64 = 0.03;
 /// What is excluded is not come nearer to than this part of the scale.
 const BESIDE: f64 = 1e-9;
 
@@ -59,6 +65,9 @@ pub(crate) struct Set {
     pub(crate) values: Vec<f64>,
     pub(crate) deviations: Vec<f64>,
     pub(crate) place_deviation: f64,
+    /// Whether these were stated: those of values, and that of places.
+    pub(crate) is_known: bool,
+    place_is_known: bool,
     /// What counts as one along both axes, for distances along a curve.
     pub(crate) size: [f64; 2],
     pub(crate) sweep: Sweep,
@@ -104,7 +113,7 @@ pub(crate) struct Problem {
     pub(crate) starts: usize,
     pub(crate) loss: Loss,
     pub(crate) cancel: Cancel,
-    /// Whether deviations are known of all sets.
+    /// Whether deviations are known of some sets: those of the others are found beside them.
     pub(crate) is_absolute: bool,
     /// What it was made of, to fit something like it.
     pub(crate) asked: Fit,
@@ -124,7 +133,7 @@ impl Problem {
             starts: fit.starts.max(1),
             loss: fit.loss,
             cancel: fit.cancel.clone(),
-            is_absolute: fit.sets.iter().all(checks::is_known),
+            is_absolute: fit.sets.iter().any(checks::is_known),
             asked: fit.clone(),
             system,
             model,
@@ -135,6 +144,12 @@ impl Problem {
         }
         for free in &fit.free {
             problem.free(free)?;
+        }
+        for unknown in &mut problem.unknowns {
+            let mut begins = fit.begins.iter();
+            if let Some((_, value)) = begins.find(|(name, _)| *name == unknown.name) {
+                unknown.start = value.clamp(unknown.limits[0], unknown.limits[1]);
+            }
         }
         checks::values(&problem)?;
         let measured: usize = problem.sets.iter().map(Set::residuals).sum();
@@ -166,6 +181,17 @@ impl Problem {
         let mut settings: Vec<(usize, f64)> = settings.collect();
         settings.sort_by_key(|(index, _)| *index);
         let [low, high] = checks::extremes(&set.places);
+        // A branch that ends beyond the last value is followed to its end.
+        let parameter = self.parameter(&set.varied);
+        let is_admitted = |value: &f64| match parameter {
+            None => *value > 0.0,
+            Some(index) => self.system.facts().parameters[index].admits(*value),
+        };
+        let jumps = set.jumps.iter().map(|jump| jump.value);
+        let jumps = jumps.filter(is_admitted);
+        let [low, high] = jumps.fold([low, high], |[low, high], jump| {
+            [low.min(jump), high.max(jump)]
+        });
         let known = self.groups.iter_mut().position(|group| {
             (&group.varied, group.omega, &group.settings, group.own)
                 == (&set.varied, set.omega, &settings, own)
@@ -254,6 +280,38 @@ impl Problem {
         [low.max(minimum), high.min(maximum)]
     }
 
+    /// Makes deviations that were not stated those by which values scatter, beside sets of which they were: weights and estimates are found in
+    /// turn, with the degrees of freedom shared as the values are. Whether any has changed.
+    ///
+    /// Source: Carroll and Ruppert (1988), Transformation and Weighting in Regression, section 3.2 (variances by groups).
+    pub(crate) fn weigh(&mut self, first: &[usize], residuals: &[f64]) -> bool {
+        let (count, unknowns) = (residuals.len(), self.unknowns.len());
+        if !self.is_absolute || count <= unknowns {
+            return false;
+        }
+        let left = (count - unknowns) as f64 / count as f64;
+        let mut has_changed = false;
+        let sets = self.sets.iter_mut().zip(first);
+        for (set, &first) in sets.filter(|(set, _)| !set.is_known) {
+            let own = &residuals[first..][..set.places.len()];
+            let scatter = match self.loss {
+                Loss::Squares => (square(own) / (own.len() as f64 * left)).sqrt(),
+                Loss::Huber(_) => spread(own),
+            };
+            let [low, high] = checks::extremes(&set.values);
+            let least = ROUNDED * low.abs().max(high.abs());
+            let before = set.deviations[0];
+            let deviation = (before * scatter).max(least).max(f64::MIN_POSITIVE);
+            let times = deviation / before;
+            has_changed |= times.ln().abs() > SETTLED;
+            set.deviations.fill(deviation);
+            if !set.place_is_known {
+                set.place_deviation *= times;
+            }
+        }
+        has_changed
+    }
+
     /// The name of the parameter that an unknown is.
     pub(crate) fn name_of(&self, unknown: &Unknown) -> &str {
         &self.model.parameters[unknown.parameter].name
@@ -322,6 +380,8 @@ fn measured(set: &DataSet, wanted: Wanted, group: usize) -> Set {
         name: set.name.clone(),
         group,
         deviations: sorted(&deviations),
+        is_known: checks::is_known(set),
+        place_is_known: set.place_deviation.is_some(),
         place_deviation: set
             .place_deviation
             .unwrap_or_else(|| checks::usual_step(&places)),

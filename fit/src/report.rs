@@ -49,6 +49,7 @@ impl fmt::Display for Estimate {
             error,
             interval,
             at_limit,
+            undetermined,
         } = self;
         let unit = if unit.is_empty() {
             String::new()
@@ -68,10 +69,11 @@ impl fmt::Display for Estimate {
                 f,
                 "{name:<10} {value}{unit}, at the end of its range: the data want it beyond, or do not need it"
             ),
-            _ => write!(
+            _ if *undetermined => write!(
                 f,
                 "{name:<10} {value:.3e}{unit}, which the data do not determine"
             ),
+            _ => write!(f, "{name:<10} {value}{unit}, without a standard error"),
         }
     }
 }
@@ -124,11 +126,29 @@ impl Fitted {
                 "residuals  {of}: scatter {:.3} of the stated deviations",
                 self.scatter
             )?,
+            (false, _) if self.scatter.is_nan() => {
+                writeln!(
+                    f,
+                    "residuals  {of}, as many as parameters: nothing is left of them"
+                )?;
+            }
             (false, _) => writeln!(
                 f,
                 "residuals  {of}: scatter {:.2e} of the largest value of a set; no deviations were stated, so the errors follow from it",
                 0.01 * self.scatter
             )?,
+        }
+        for set in self
+            .sets
+            .iter()
+            .filter(|set| self.is_absolute && !set.stated)
+        {
+            let deviation = set.values.first().map_or(f64::NAN, |value| value.deviation);
+            let (name, unit) = (&set.name, &set.unit);
+            writeln!(
+                f,
+                "weighed    {name} by a standard deviation of {deviation:.1e} {unit}: none was stated, and so its values scatter"
+            )?;
         }
         if self
             .probability

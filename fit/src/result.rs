@@ -20,12 +20,15 @@ pub struct Estimate {
     pub unit: String,
     /// The estimate.
     pub value: f64,
-    /// Its standard error; `None` where the estimate is at the end of its range, or the data do not determine it.
+    /// Its standard error; `None` where the estimate is at the end of its range, the data do not determine it, or as many parameters as values are
+    /// free and no deviations are known.
     pub error: Option<f64>,
     /// Its 95 % interval; `None` where there is no standard error.
     pub interval: Option<[f64; 2]>,
     /// Whether it is at the end of its range.
     pub at_limit: bool,
+    /// Whether the data do not determine it.
+    pub undetermined: bool,
 }
 
 /// A measured value beside the fit.
@@ -74,6 +77,8 @@ pub struct FittedSet {
     pub wanted: String,
     /// Its unit; empty where there is none.
     pub unit: String,
+    /// Whether deviations of its values were stated.
+    pub stated: bool,
     /// What varied, and its unit.
     pub varied: [String; 2],
     /// The values, in the order of the sweep.
@@ -123,14 +128,16 @@ pub struct Fitted {
     pub sets: Vec<FittedSet>,
     /// Sum of the squares of the residuals.
     pub chi_square: f64,
-    /// Measured values less estimates.
+    /// Values and jumps that say something: all but bounds that are met, and what has no derivatives.
+    pub count: usize,
+    /// These less the estimates that follow from them.
     pub degrees: usize,
     /// How probable a larger sum of squares is, if model and deviations are right; `None` where deviations are not known.
     pub probability: Option<f64>,
     /// The standard deviation of the residuals: one if model and deviations are right, and where none were stated in hundredths of the largest
-    /// value of a set.
+    /// value of a set. Not a number where as many parameters as values are free and no deviations are known.
     pub scatter: f64,
-    /// Whether deviations of all sets were stated.
+    /// Whether deviations of a set were stated; those of the others, if there are any, were found by how far their values scatter.
     pub is_absolute: bool,
     /// Whether the search ended by itself, and not because it was cancelled or took too long.
     pub converged: bool,
@@ -151,6 +158,15 @@ impl Fitted {
         self.estimates.iter().find(|estimate| estimate.name == name)
     }
 
+    /// All residuals.
+    pub(crate) fn all_residuals(&self) -> Vec<f64> {
+        let sets = self.sets.iter().flat_map(|set| {
+            let values = set.values.iter().map(|value| value.residual);
+            values.chain(set.jumps.iter().copied())
+        });
+        sets.collect()
+    }
+
     /// The root of the mean square of all residuals.
     pub fn rms(&self) -> f64 {
         let count: usize = self
@@ -164,8 +180,14 @@ impl Fitted {
     /// Fits again with a parameter at a value instead of free, from these estimates.
     ///
     /// # Errors
-    /// As of [`Fit::run`], and if nothing would be free.
+    /// As of [`Fit::run`], if that parameter is not free, and if nothing would be free.
     pub fn without(&self, name: &str, value: f64) -> Result<Self, FitError> {
+        if self.asked.free.iter().all(|free| free.name != name) {
+            let names = self.asked.free.iter().map(|free| free.name.as_str());
+            let names = names.collect::<Vec<_>>().join(", ");
+            let message = format!("it is not free, so that nothing is left out: there are {names}");
+            return Err(FitError::free(name, message));
+        }
         self.asked.from(self).held(name, value).run()
     }
 
@@ -179,13 +201,13 @@ impl Fitted {
             mut trial,
             mut converged,
         } = outcome;
-        let jacobian = trial.jacobian(problem).unwrap_or_else(|reason| {
-            let reason = format!("no derivatives: {reason}");
-            trials.failed.push((reason, 1));
-            DMatrix::zeros(trial.residuals.len(), problem.unknowns.len())
-        });
+        let jacobian = trial.jacobian(problem);
         converged &= !trials.is_stopped;
         let linear = Linear::of(problem, &trial, &jacobian);
+        let jacobian = jacobian.map_or_else(
+            |_| DMatrix::zeros(trial.residuals.len(), problem.unknowns.len()),
+            |own| own.matrix,
+        );
         let degrees = linear.degrees;
         let chi_square = crate::minimise::square(&trial.residuals);
         let probability = (problem.is_absolute && problem.loss == Loss::Squares && degrees > 0)
@@ -198,6 +220,7 @@ impl Fitted {
             untold: linear.in_words(problem),
             sets: sets(problem, &trial, &jacobian, &linear),
             chi_square,
+            count: linear.count,
             degrees,
             probability,
             scatter: linear.scatter,
@@ -231,6 +254,7 @@ fn estimates(problem: &Problem, trial: &Trial, linear: &Linear) -> Vec<Estimate>
             error,
             interval: error.map(|error| [value - wide * error, value + wide * error]),
             at_limit: linear.at_limit[index],
+            undetermined: linear.undetermined[index],
         }
     });
     unknowns.collect()
@@ -272,6 +296,7 @@ fn sets(
                 .wanted
                 .measure
                 .unit(problem.model.unit_of(&set.wanted.name)),
+            stated: set.is_known,
             varied: [
                 varied.clone(),
                 problem.model.unit_of_varied(varied).to_owned(),

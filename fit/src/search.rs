@@ -17,6 +17,8 @@ use crate::trial::{How, Trial};
 const KEPT: usize = 4;
 /// Where near residuals are this small, as those of data with some noise, no other start is gone on with.
 const NEAR_ENOUGH: f64 = 0.5;
+/// Deviations that were not stated are found so often, at most.
+const WEIGHED: usize = 12;
 /// Iterations with near residuals end early; those with exact ones where nothing is gained any more that noise would show, or the next step is one of
 /// the seventh digit.
 const NEAR: Until = Until {
@@ -32,7 +34,7 @@ const EXACT: Until = Until {
 
 /// Searches, fits and says what came of it.
 pub(crate) fn run(
-    problem: &Problem,
+    problem: &mut Problem,
     told: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<Fitted, FitError> {
     let stage = Cell::new(Stage::Near);
@@ -79,6 +81,7 @@ pub(crate) fn run(
     stage.set(Stage::Fit);
     let places: Vec<Started> = found.iter().map(Started::of).collect();
     let outcome = exact(problem, found, &mut trials)?;
+    let outcome = weighed(problem, outcome, &mut trials);
     stage.set(Stage::Errors);
     let _ = (trials.told)(trials.count, rms(&outcome.trial));
     Ok(Fitted::of(problem, outcome, places, &mut trials))
@@ -172,6 +175,24 @@ fn refined(problem: &Problem, start: Trial, trials: &mut Trials<'_>) -> Outcome 
     let first = minimise(problem, start, scale, EXACT, trials);
     let scale = spread(&first.trial.residuals);
     minimise(problem, first.trial, scale, EXACT, trials)
+}
+
+/// The fit again, with deviations that were not stated as values scatter, until these settle.
+fn weighed(problem: &mut Problem, mut outcome: Outcome, trials: &mut Trials<'_>) -> Outcome {
+    for _ in 0..WEIGHED {
+        let trial = &outcome.trial;
+        if trials.is_stopped || !problem.weigh(&trial.first, &trial.residuals) {
+            break;
+        }
+        match trials.at(problem, &trial.unknowns, How::Exact) {
+            Ok(start) => outcome = refined(problem, start, trials),
+            Err(_) => {
+                outcome.converged = false;
+                break;
+            }
+        }
+    }
+    outcome
 }
 
 /// The standard deviation of residuals by the median of their sizes, which outliers hardly move. Source: Hampel (1974), Journal of the

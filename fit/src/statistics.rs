@@ -24,7 +24,7 @@ use crate::fit::Loss;
 use crate::minimise::{WITHOUT, square};
 use crate::problem::Problem;
 use crate::search::spread;
-use crate::trial::Trial;
+use crate::trial::{Jacobian, Trial};
 
 /// A direction with a singular value below this part of the largest is not determined.
 const NOTHING: f64 = 1e-6;
@@ -50,11 +50,18 @@ pub(crate) struct Linear {
     pub(crate) at_limit: Vec<bool>,
     /// Unknowns that no residual depends on.
     silent: Vec<usize>,
+    /// Unknowns that are not at the end of their range, and that the data do not determine.
+    pub(crate) undetermined: Vec<bool>,
+    /// Residuals that say nothing for want of derivatives, and why; or all of them.
+    lacking: Vec<String>,
+    /// The scatter of the residuals; not a number where there are no more of them than unknowns, and deviations are not known.
     pub(crate) scatter: f64,
     pub(crate) degrees: usize,
-    count: usize,
+    /// Residuals that say something.
+    pub(crate) count: usize,
     square: f64,
     is_absolute: bool,
+    is_robust: bool,
     determined: DMatrix<f64>,
 }
 
@@ -68,18 +75,17 @@ pub(crate) struct LeftOut {
 }
 
 impl Linear {
-    pub(crate) fn of(problem: &Problem, trial: &Trial, jacobian: &DMatrix<f64>) -> Self {
+    /// Of derivatives at a trial, or why there are none.
+    pub(crate) fn of(
+        problem: &Problem,
+        trial: &Trial,
+        derivatives: &Result<Jacobian, String>,
+    ) -> Self {
         let count = problem.unknowns.len();
+        let none = DMatrix::zeros(trial.residuals.len(), count);
+        let jacobian = derivatives.as_ref().map_or(&none, |own| &own.matrix);
         let values = problem.unknowns.iter().zip(&trial.unknowns);
-        let at_limit: Vec<bool> = values
-            .clone()
-            .map(|(unknown, value)| {
-                unknown
-                    .limits
-                    .iter()
-                    .any(|limit| (value - limit).abs() <= AT * unknown.scale)
-            })
-            .collect();
+        let at_limit = at_limit(problem, trial);
         let scale = |(unknown, value): (&crate::problem::Unknown, &f64)| {
             if *value == 0.0 {
                 unknown.scale
@@ -94,20 +100,21 @@ impl Linear {
         let inner: Vec<(usize, f64)> = inner.collect();
         let size = |&(index, scale): &(usize, f64)| jacobian.column(index).norm() * scale;
         let largest = inner.iter().map(size).fold(0.0, f64::max);
-        let (inner, silent): (Vec<_>, Vec<_>) = inner
+        let (inner, mut silent): (Vec<_>, Vec<_>) = inner
             .into_iter()
             .partition(|column| size(column) > WITHOUT * largest);
+        if derivatives.is_err() {
+            // Of what is not known nothing is silent.
+            silent.clear();
+        }
         let silent: Vec<usize> = silent.into_iter().map(|(index, _)| index).collect();
         let scaled = DMatrix::from_fn(jacobian.nrows(), inner.len(), |i, j| {
             jacobian[(i, inner[j].0)] * inner[j].1
         });
         let (singular, directions) = decomposed(&scaled);
-        // A bound that is met says nothing.
-        let says = (0..jacobian.nrows())
-            .filter(|&i| trial.residuals[i] != 0.0 || jacobian.row(i).iter().any(|x| *x != 0.0));
-        let measured = says.count();
-        let degrees = measured.saturating_sub(inner.len());
-        let scatter = scatter(problem, &trial.residuals, degrees);
+        let says = saying(trial, derivatives);
+        let degrees = says.len().saturating_sub(inner.len());
+        let scatter = scatter(problem, &says, degrees);
         let largest = singular.iter().fold(0.0, |m: f64, &x| m.max(x));
         let mut covariance = DMatrix::zeros(count, count);
         let mut determined = DMatrix::zeros(count, count);
@@ -125,7 +132,15 @@ impl Linear {
                 }
             }
         }
+        let undetermined = (0..count).map(|index| {
+            let is_nothing: bool = covariance[(index, index)].is_nan();
+            is_nothing || silent.contains(&index)
+        });
+        let undetermined = undetermined.collect();
         covariance += &determined * (scatter * scatter);
+        if derivatives.is_err() {
+            covariance.fill(f64::NAN);
+        }
         for index in (0..count).filter(|index| at_limit[*index] || silent.contains(index)) {
             covariance.row_mut(index).fill(f64::NAN);
             covariance.column_mut(index).fill(f64::NAN);
@@ -137,11 +152,14 @@ impl Linear {
             inner,
             at_limit,
             silent,
+            undetermined,
+            lacking: lacking(derivatives),
             scatter,
             degrees,
-            count: measured,
-            square: square(&trial.residuals),
+            count: says.len(),
+            square: square(&says),
             is_absolute: problem.is_absolute,
+            is_robust: problem.loss != Loss::Squares,
             determined,
         }
     }
@@ -167,14 +185,19 @@ impl Linear {
         let leverage = gradient.dot(&moved).clamp(0.0, 1.0);
         let rest = (1.0 - leverage).max(1e-12);
         let others = self.degrees.saturating_sub(1);
-        let without = if self.is_absolute || others == 0 {
+        // Of a robust loss the scatter does not follow outliers, and the sum of squares does.
+        let without = if self.is_absolute || self.is_robust || others == 0 {
             self.scatter
         } else {
             // Where nothing is left, rounding is.
             let sum = (self.square - residual * residual / rest).max(1e-9 * self.square);
             (sum / others as f64).sqrt()
         };
-        let studentised = residual / (without.max(f64::MIN_POSITIVE) * rest.sqrt());
+        let studentised = if without.is_nan() {
+            f64::NAN
+        } else {
+            residual / (without.max(f64::MIN_POSITIVE) * rest.sqrt())
+        };
         let part = 1.0 - 0.5 * OUTSIDE / self.count.max(1) as f64;
         let changes = (0..moved.len()).map(|i| {
             let error = self.covariance[(i, i)].sqrt();
@@ -197,10 +220,14 @@ impl Linear {
         let name = |index: usize| problem.unknowns[index].name.as_str();
         let silent = self.silent.iter().map(|&index| name(index));
         let silent = silent.map(|name| format!("the data say nothing of {name}"));
-        let mut said: Vec<String> = silent.collect();
+        let mut said: Vec<String> = self.lacking.iter().cloned().chain(silent).collect();
+        if self.scatter.is_nan() && self.lacking.is_empty() {
+            let what = "as many parameters as values: how far values scatter is not known, nor are standard errors";
+            said.push(what.to_owned());
+        }
         for (k, &value) in self.singular.iter().enumerate() {
             let is_nothing = value <= NOTHING * largest || value == 0.0;
-            if !is_nothing && self.scatter / value <= COARSE {
+            if !is_nothing && (self.scatter.is_nan() || self.scatter / value <= COARSE) {
                 continue;
             }
             let direction = self.directions.column(k);
@@ -232,6 +259,50 @@ impl Linear {
     }
 }
 
+/// Whether each unknown is at the end of its range.
+fn at_limit(problem: &Problem, trial: &Trial) -> Vec<bool> {
+    let values = problem.unknowns.iter().zip(&trial.unknowns);
+    let at_limit = values.map(|(unknown, value)| {
+        let mut limits = unknown.limits.iter();
+        limits.any(|limit| (value - limit).abs() <= AT * unknown.scale)
+    });
+    at_limit.collect()
+}
+
+/// The residuals that say something: a bound that is met says nothing, nor does what has no derivatives.
+fn saying(trial: &Trial, derivatives: &Result<Jacobian, String>) -> Vec<f64> {
+    let says = |row: usize| match derivatives {
+        Err(_) => true,
+        Ok(Jacobian { matrix, without }) => {
+            let is_met = trial.residuals[row] == 0.0 && matrix.row(row).iter().all(|x| *x == 0.0);
+            !is_met && without.iter().all(|(own, _)| *own != row)
+        }
+    };
+    let residuals = trial.residuals.iter().enumerate();
+    let says = residuals.filter(|(row, _)| says(*row));
+    says.map(|(_, residual)| *residual).collect()
+}
+
+/// What has no derivatives, in words, each once.
+fn lacking(derivatives: &Result<Jacobian, String>) -> Vec<String> {
+    let without = match derivatives {
+        Err(reason) => {
+            return vec![format!(
+                "no standard errors, for want of derivatives: {reason}"
+            )];
+        }
+        Ok(Jacobian { without, .. }) => without,
+    };
+    let mut said: Vec<String> = Vec::new();
+    for (_, what) in without {
+        let what = format!("estimates do not follow what has no derivatives: {what}");
+        if !said.contains(&what) {
+            said.push(what);
+        }
+    }
+    said
+}
+
 /// `a, b and c`.
 fn listed(names: &[&str]) -> String {
     match names {
@@ -256,9 +327,12 @@ fn decomposed(matrix: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
     (svd.singular_values, directions)
 }
 
-/// The scatter of residuals (3).
+/// The scatter of residuals (3); not a number where none is left to tell it.
 fn scatter(problem: &Problem, residuals: &[f64], degrees: usize) -> f64 {
-    let degrees = degrees.max(1) as f64;
+    if degrees == 0 {
+        return if problem.is_absolute { 1.0 } else { f64::NAN };
+    }
+    let degrees = degrees as f64;
     match problem.loss {
         Loss::Squares if problem.is_absolute => 1.0,
         Loss::Squares => (square(residuals) / degrees).sqrt(),

@@ -58,6 +58,14 @@ struct Beside {
     left: Option<(f64, usize)>,
 }
 
+/// Derivatives of residuals by the unknowns, a row for each.
+#[derive(Debug)]
+pub(crate) struct Jacobian {
+    pub(crate) matrix: DMatrix<f64>,
+    /// Rows that are not known, and zero: what of, and why.
+    pub(crate) without: Vec<(usize, String)>,
+}
+
 /// Curves at values of the unknowns, and residuals.
 #[derive(Debug)]
 pub(crate) struct Trial {
@@ -241,30 +249,48 @@ impl Trial {
         Ok(())
     }
 
-    /// Derivatives of the residuals by the unknowns, one row for each.
+    /// Derivatives of the residuals by the unknowns. A residual that has none, as where an orbit grazes beside a fold, is left out of them, and the
+    /// others are enough.
     ///
     /// # Errors
-    /// Why there are none.
-    pub(crate) fn jacobian(&mut self, problem: &Problem) -> Result<DMatrix<f64>, String> {
+    /// Why there are none at all.
+    pub(crate) fn jacobian(&mut self, problem: &Problem) -> Result<Jacobian, String> {
         let count = problem.unknowns.len();
         let mut rows: Vec<Vec<f64>> = Vec::with_capacity(self.residuals.len());
+        let mut without: Vec<(usize, String)> = Vec::new();
+        let mut known = |row: Result<Vec<f64>, String>, of: &dyn Fn() -> String| {
+            rows.push(row.unwrap_or_else(|reason| {
+                without.push((rows.len(), format!("{}: {reason}", of())));
+                vec![0.0; count]
+            }));
+        };
         for (number, set) in problem.sets.iter().enumerate() {
-            let mut values = self.at_feet(problem, number, set);
-            self.between(problem, number, set, &mut values)?;
-            rows.extend(values.into_iter().flatten());
-            for jump in 0..set.jumps.len() {
-                let by = set.jumps[jump].deviation.max(self.least(set.size[0]));
-                let is_met = set.jumps[jump].is_bound && self.residuals[rows.len()] == 0.0;
+            let values = self.at_feet(problem, number, set);
+            for row in self.between(problem, number, set, values) {
+                known(row, &|| format!("values of {}", set.name));
+            }
+            let first = self.first[number] + set.places.len();
+            for (jump, own) in set.jumps.iter().enumerate() {
+                let by = own.deviation.max(self.least(set.size[0]));
+                let is_met = own.is_bound && self.residuals[first + jump] == 0.0;
                 let sheet = self.beside[number].jumps[jump].filter(|_| !is_met);
-                rows.push(self.fold_row(problem, number, sheet, by)?);
+                let row = self.fold_row(problem, number, sheet, by);
+                known(row, &|| format!("the jump of {}", set.name));
             }
             if self.how == How::Near {
                 let sheet = self.beside[number].left.map(|(_, sheet)| sheet);
                 let by = self.least(set.size[0]);
-                rows.push(self.fold_row(problem, number, sheet, by)?);
+                let row = self.fold_row(problem, number, sheet, by);
+                known(row, &|| format!("where {} leaves a sheet", set.name));
             }
         }
-        Ok(DMatrix::from_fn(rows.len(), count, |i, j| rows[i][j]))
+        match without.first() {
+            Some((_, reason)) if without.len() == rows.len() => Err(reason.clone()),
+            _ => Ok(Jacobian {
+                matrix: DMatrix::from_fn(rows.len(), count, |i, j| rows[i][j]),
+                without,
+            }),
+        }
     }
 
     /// The row of the distance of a datum from the fold that ends a sheet; zeros without one.
@@ -299,20 +325,23 @@ impl Trial {
         (0..set.places.len()).map(row).collect()
     }
 
-    /// Puts rows by derivatives between some orbits where there are none yet.
+    /// Rows with those by derivatives between some orbits where there are none yet; why, where no orbit of the sheet has any.
     fn between(
         &mut self,
         problem: &Problem,
         number: usize,
         set: &Set,
-        rows: &mut [Option<Vec<f64>>],
-    ) -> Result<(), String> {
+        rows: Vec<Option<Vec<f64>>>,
+    ) -> Vec<Result<Vec<f64>, String>> {
         let beside = &self.beside[number];
         let curve = &mut self.curves[set.group];
+        let rows = rows.into_iter();
+        let mut rows: Vec<Result<Vec<f64>, String>> =
+            rows.map(|row| row.ok_or_else(String::new)).collect();
         for number in 0..beside.sheets.len() {
             let feet = beside.feet.iter().zip(rows.iter_mut());
-            let without = |((own, _), row): &(&(usize, Foot), &mut Option<Vec<f64>>)| {
-                *own == number && row.is_none()
+            let without = |((own, _), row): &(&(usize, Foot), &mut Result<Vec<f64>, String>)| {
+                *own == number && row.is_err()
             };
             let without: Vec<_> = feet.filter(without).collect();
             if without.is_empty() {
@@ -328,13 +357,14 @@ impl Trial {
                 wanted: beside.wanted,
                 size: set.size,
             };
-            let splines = splines(problem, curve, of, &nodes)?;
+            let splines = splines(problem, curve, of, &nodes);
             for ((_, foot), row) in without {
                 let by = |spline: &Spline| foot.weight * spline.of(foot.along)[0];
-                *row = Some(splines.iter().map(by).collect());
+                let splines = splines.as_ref().map_err(String::clone);
+                *row = splines.map(|splines| splines.iter().map(by).collect());
             }
         }
-        Ok(())
+        rows
     }
 
     /// What the fit says at each value: the reading of the model at the place of the datum's foot, and that place.
@@ -496,6 +526,8 @@ mod tests {
         for how in [How::Near, How::Exact] {
             let mut trial = Trial::below(&problem, &at, how, f64::INFINITY).expect("a trial");
             let jacobian = trial.jacobian(&problem).expect("derivatives");
+            assert_eq!(jacobian.without, []);
+            let jacobian = jacobian.matrix;
             for j in 0..3 {
                 let h = 1e-5 * at[j];
                 let [a, b] = [-h, h].map(|h| {

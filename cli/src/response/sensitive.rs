@@ -244,7 +244,8 @@ fn table(out: &mut csv::Writer<Vec<u8>>, branches: &[Branch], all: &[At]) -> csv
             held,
         ) in fixed.chain(moving)
         {
-            for (variable, by) in found.variables.iter().zip(by) {
+            let known = found.variables.iter().zip(by);
+            for (variable, by) in known.filter(|(_, by)| !by.value.is_nan()) {
                 let [size, derivative, error] = [*value, by.value, by.error].map(cell);
                 row([name, unit, &size, held, variable, &derivative, &error, ""])?;
             }

@@ -96,15 +96,25 @@ impl Branch {
             chart
         };
         let chart = held.iter().fold(chart, |chart, name| {
-            chart.remark(format!(
-                "{name} is what is varied: the place is one of its values"
-            ))
+            chart.remark(self.why_held(moves, name))
         });
         Ok(if self.model.is_plain() {
             plain(chart, &[])
         } else {
             chart
         })
+    }
+
+    /// Why a parameter does not move a place.
+    fn why_held(&self, moves: &Sensitivities, name: &str) -> String {
+        if name == self.varied {
+            return format!("{name} is what is varied: the place is one of its values");
+        }
+        let what = format!("place by {name}");
+        let mut missing = moves.missing.iter();
+        let why = missing.find(|missing| missing.what == what);
+        let why = why.map_or("the place has no derivative by it", |missing| &missing.why);
+        format!("{name}: {why}")
     }
 
     fn usual(&self) -> Vec<Uncertain> {

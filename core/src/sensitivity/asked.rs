@@ -11,8 +11,9 @@ use crate::orbit::observe::Wanted;
 impl Branch {
     /// Derivatives of what is read off an orbit of this branch, by the frequency and by every parameter of the declaration, exponents
     /// included, each with its error: of extremes, peak-to-peak, mean, rms, crest factor and five harmonics of every coordinate and output, of
-    /// the forces of contacts, the part of the period on each piece of their laws, the power of the load, and the multipliers. The orbit is found again from switch to
-    /// switch, so that they are those of the true orbit, whatever method followed the branch.
+    /// the forces of contacts and their impulses, the part of the period on each piece of their laws, the power of the load, and the
+    /// multipliers. The orbit is found again from switch to switch, so that they are those of the true orbit, whatever method followed the
+    /// branch.
     ///
     /// ```
     /// use hertzian::FrequencyResponse;
@@ -39,17 +40,20 @@ impl Branch {
         problem.with_multipliers(&rows::all(&self.model))
     }
 
-    /// The same of what is asked for alone: `"x:rms".parse()?`.
+    /// The same of what is asked for alone: `"x:rms".parse()?`. What has no derivative at any orbit, as a number of impacts, is among what is
+    /// missing.
     ///
     /// # Errors
-    /// As [`sensitivities`](Self::sensitivities), and if nothing has such a name or it has no derivative, as a number of impacts.
+    /// As [`sensitivities`](Self::sensitivities), and if nothing has such a name.
     pub fn sensitivities_of(
         &self,
         point: &Point,
         wanted: &[Wanted],
     ) -> Result<Sensitivities, Error> {
-        let rows = self.rows(wanted)?;
-        Sensitive::of(self, point)?.of_point(&rows)
+        let (rows, missing) = rows::with_derivatives(&self.model, wanted)?;
+        let mut told = Sensitive::of(self, point)?.of_point(&rows)?;
+        told.missing.extend(missing);
+        Ok(told)
     }
 
     /// As [`sensitivities_of`](Self::sensitivities_of), by some variables alone (`"omega"`, or parameters) and in a fraction of the time: to eight
@@ -74,14 +78,15 @@ impl Branch {
     /// ```
     ///
     /// # Errors
-    /// As [`sensitivities_of`](Self::sensitivities_of), and if there is no such parameter.
+    /// As [`sensitivities_of`](Self::sensitivities_of), and if there is no such parameter, or a number of impacts is asked for.
     pub fn quick_sensitivities_of(
         &self,
         point: &Point,
         wanted: &[Wanted],
         by: &[&str],
     ) -> Result<Sensitivities, Error> {
-        let rows = self.rows(wanted)?;
+        let rows = wanted.iter().map(|wanted| rows::row(&self.model, wanted));
+        let rows: Vec<Row> = rows.collect::<Result<_, _>>()?;
         Sensitive::of(self, point)?.only_by(by)?.quick(&rows)
     }
 
@@ -111,8 +116,8 @@ impl Branch {
     /// ```
     ///
     /// # Errors
-    /// If branches cross there, which a change of parameters undoes, the multiplier that decides is a repeated one, a force jumps at the level
-    /// that is touched, the branch was read from a file and has no [model](Self::attach), or the event is not found again.
+    /// If branches cross there, which a change of parameters undoes, the multiplier that decides is a repeated one, the branch was read from a
+    /// file and has no [model](Self::attach), or the event is not found again.
     pub fn event_sensitivities(&self, event: &Event) -> Result<Sensitivities, Error> {
         let rows = rows::all(&self.model);
         Sensitive::of(self, &event.point)?.of_event(event, &rows, true)
@@ -122,18 +127,15 @@ impl Branch {
     /// had sooner.
     ///
     /// # Errors
-    /// As there, and if nothing has such a name or it has no derivative.
+    /// As there, and if nothing has such a name.
     pub fn event_sensitivities_of(
         &self,
         event: &Event,
         wanted: &[Wanted],
     ) -> Result<Sensitivities, Error> {
-        let rows = self.rows(wanted)?;
-        Sensitive::of(self, &event.point)?.of_event(event, &rows, false)
-    }
-
-    fn rows(&self, wanted: &[Wanted]) -> Result<Vec<Row>, Error> {
-        let rows = wanted.iter();
-        rows.map(|wanted| rows::row(&self.model, wanted)).collect()
+        let (rows, missing) = rows::with_derivatives(&self.model, wanted)?;
+        let mut told = Sensitive::of(self, &event.point)?.of_event(event, &rows, false)?;
+        told.missing.extend(missing);
+        Ok(told)
     }
 }

@@ -47,7 +47,7 @@ const NEAR: f64 = 1e-7;
 const FARTHEST: f64 = 1e-2;
 /// A multiplier is taken to be the one that crosses within this distance of where it should.
 const BESIDE: f64 = 0.1;
-/// A parameter leaves a symmetry as it is if `w^T F_p` is no larger part of `F_p`.
+/// A parameter leaves a symmetry as it is if `w^T F_p` is no larger part of `F_p`, both in units of states.
 const LEAVES: f64 = 1e-6;
 
 /// What crosses the unit circle, and where.
@@ -85,11 +85,12 @@ impl Crosses {
     }
 }
 
-/// The left and the right null vector.
+/// The left and the right null vector, in units of states.
 type Null = (DVector<f64>, DVector<f64>);
 
 /// `F_s x = right`, by (2) where null vectors are given.
 fn solved(
+    cycle: &Cycle,
     jacobian: &DMatrix<f64>,
     right: &DVector<f64>,
     null: Option<&Null>,
@@ -99,16 +100,17 @@ fn solved(
         return jacobian.clone().lu().solve(right).ok_or(singular);
     };
     let n = right.len();
-    let size = jacobian.norm();
+    let scaled = cycle.scaled(jacobian);
+    let size = scaled.norm();
     let mut matrix = DMatrix::zeros(n + 1, n + 1);
-    matrix.view_mut((0, 0), (n, n)).copy_from(jacobian);
+    matrix.view_mut((0, 0), (n, n)).copy_from(&scaled);
     matrix.view_mut((0, n), (n, 1)).copy_from(&(left * size));
     let row = vector.transpose() * size;
     matrix.view_mut((n, 0), (1, n)).copy_from(&row);
     let mut all = DVector::zeros(n + 1);
-    all.rows_mut(0, n).copy_from(right);
+    all.rows_mut(0, n).copy_from(&cycle.in_units(right));
     let found = matrix.lu().solve(&all).ok_or(singular)?;
-    Ok(found.rows(0, n).into_owned())
+    Ok(cycle.from_units(&found.rows(0, n).into_owned()))
 }
 
 /// An orbit with the multiplier that crosses.
@@ -129,12 +131,12 @@ impl Critical {
     ) -> Result<Self, SensitivityError> {
         let null = if crosses == Crosses::One {
             let evaluated = cycle.evaluate(states, &[], &[])?;
-            Some(null_vectors(&evaluated.jacobian)?)
+            Some(null_vectors(&cycle.scaled(&evaluated.jacobian))?)
         } else {
             None
         };
-        cycle.solve_by(states, |jacobian, right| {
-            solved(jacobian, right, null.as_ref())
+        cycle.solve_by(states, |cycle, jacobian, right| {
+            solved(cycle, jacobian, right, null.as_ref())
         })?;
         let (evaluated, crossed) = seen(cycle, states, variables)?;
         let multiplier = nearest(cycle, &evaluated, crosses)?;
@@ -147,10 +149,10 @@ impl Critical {
     }
 
     /// Whether one of the variables breaks the symmetry: `g` of (2) is not zero.
-    fn is_unfolded_by(&self, index: usize) -> bool {
-        let by = &self.evaluated.by[index];
+    fn is_unfolded_by(&self, cycle: &Cycle, index: usize) -> bool {
+        let by = cycle.in_units(&self.evaluated.by[index]);
         let null = self.null.as_ref();
-        null.is_some_and(|(left, _)| left.dot(by).abs() > LEAVES * by.norm())
+        null.is_some_and(|(left, _)| left.dot(&by).abs() > LEAVES * by.norm())
     }
 
     /// `Re(mu'/mu)` by each of the variables, and its error; no numbers where one breaks the symmetry.
@@ -166,7 +168,7 @@ impl Critical {
         let bend = self.multiplier.bend(cycle, &centre, &matrices)?;
         let value = self.multiplier.value;
         let slope = |index: usize| {
-            if self.is_unfolded_by(index) {
+            if self.is_unfolded_by(cycle, index) {
                 return Ok((f64::NAN, f64::NAN));
             }
             let jacobian = &self.evaluated.jacobian;
@@ -174,7 +176,7 @@ impl Critical {
             let mut weights = vec![0.0; variables.len()];
             weights[index] = 1.0;
             let along = Along {
-                states: solved(jacobian, &right, self.null.as_ref())?,
+                states: solved(cycle, jacobian, &right, self.null.as_ref())?,
                 weights,
             };
             let (slope, error) = bend.slope(&along);
@@ -265,6 +267,7 @@ fn moves(
         value,
         by,
         errors,
+        near: None,
     })
 }
 
@@ -290,7 +293,7 @@ pub(super) fn bends(
     let own = own.ok_or(SensitivityError::Singular)?;
     cycle.set(varied, fold.value)?;
     let (evaluated, crossed) = seen(cycle, &fold.states, variables)?;
-    let null = null_vectors(&evaluated.jacobian)?;
+    let null = null_vectors(&cycle.scaled(&evaluated.jacobian))?;
     let multiplier = nearest(cycle, &evaluated, Crosses::One)?;
     let still = Along {
         states: DVector::zeros(cycle.unknowns()),
@@ -303,14 +306,14 @@ pub(super) fn bends(
         if index != own {
             let place = places.next().copied().unwrap_or(f64::NAN);
             let right = -(&evaluated.by[index] + &evaluated.by[own] * place);
-            along.states = solved(&evaluated.jacobian, &right, Some(&null))?;
+            along.states = solved(cycle, &evaluated.jacobian, &right, Some(&null))?;
             along.weights[index] = 1.0;
             along.weights[own] = place;
         }
         directions.push(along);
     }
     let mut last = still;
-    last.states.copy_from(&null.1);
+    last.states = cycle.from_units(&null.1);
     let matrices = cycle.matrices(&evaluated);
     let centre = Centre::known(cycle, &fold.states, variables, &evaluated, crossed);
     let bend = multiplier.bend(cycle, &centre, &matrices)?;

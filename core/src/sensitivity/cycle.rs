@@ -368,6 +368,24 @@ impl Cycle {
         }
     }
 
+    /// The Jacobian of the equations in these units.
+    pub(super) fn scaled(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+        let unit = |index: usize| self.unit(index);
+        DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |i, j| {
+            jacobian[(i, j)] * unit(j) / unit(i)
+        })
+    }
+
+    /// States, or equations, in these units.
+    pub(super) fn in_units(&self, states: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(states.len(), |i, _| states[i] / self.unit(i))
+    }
+
+    /// States that are in these units.
+    pub(super) fn from_units(&self, states: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(states.len(), |i, _| states[i] * self.unit(i))
+    }
+
     /// The largest entry of states in these units.
     pub(super) fn size(&self, states: &[f64]) -> f64 {
         let entries = states.iter().enumerate();
@@ -379,7 +397,7 @@ impl Cycle {
     /// # Errors
     /// If the motion cannot be continued, or Newton's method does not converge.
     pub(super) fn solve(&mut self, states: &mut [f64]) -> Result<(), SensitivityError> {
-        self.solve_by(states, |jacobian, right| {
+        self.solve_by(states, |_, jacobian, right| {
             let solved = jacobian.clone().lu().solve(right);
             solved.ok_or(SensitivityError::Singular)
         })
@@ -392,14 +410,14 @@ impl Cycle {
     pub(super) fn solve_by(
         &mut self,
         states: &mut [f64],
-        solver: impl Fn(&DMatrix<f64>, &DVector<f64>) -> Result<DVector<f64>, SensitivityError>,
+        solver: impl Fn(&Self, &DMatrix<f64>, &DVector<f64>) -> Result<DVector<f64>, SensitivityError>,
     ) -> Result<(), SensitivityError> {
         let mut before = f64::INFINITY;
         for _ in 0..ITERATIONS {
             let Evaluated {
                 residual, jacobian, ..
             } = self.evaluate(states, &[], &[])?;
-            let update = solver(&jacobian, &-residual)?;
+            let update = solver(self, &jacobian, &-residual)?;
             let length = self.size(update.as_slice()) / self.size(states).max(f64::MIN_POSITIVE);
             states.iter_mut().zip(&update).for_each(|(x, d)| *x += d);
             if self.has_converged(length, before) {

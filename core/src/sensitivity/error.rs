@@ -44,11 +44,6 @@ pub enum SensitivityError {
         "multipliers have no derivatives here: motions beside the orbit, however near, cross other levels, as where a gap touches one"
     )]
     Beside,
-    /// A force jumps at the level that is touched.
-    #[error(
-        "the place has no derivative: at the level that is touched the force jumps, and with it the motion of what is beside"
-    )]
-    Jumps,
     /// No gap comes near a level.
     #[error("no gap of the orbit has an extreme on a level")]
     NoTouch,
@@ -88,7 +83,6 @@ crate::error::room_error! {
     NoCrossing {}
     Repeated {}
     Beside {}
-    Jumps {}
     NoTouch {}
     Uncertainty { text }
     ;

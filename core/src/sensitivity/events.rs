@@ -11,13 +11,16 @@
 use super::critical::{self, Crosses};
 use super::cycle::Cycle;
 use super::error::SensitivityError;
+use super::grazing;
 use super::moments::Slope;
-use super::orbit::{BESIDE, FINE, ROUNDINGS, Sensitive, Start, apart, finite, unless_cancelled};
+use super::orbit::{
+    BESIDE, FINE, ROUNDINGS, Sensitive, Start, apart, condition, finite, unless_cancelled,
+};
 use super::place::{self, Moving};
 use super::rows::Row;
 use super::{Derivative, Measured, Missing, Sensitivities};
 use crate::branches::point::Event;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::event::EventKind;
 use crate::system::Variable;
 
@@ -44,13 +47,42 @@ impl Sensitive<'_> {
             })?,
             (EventKind::Grazing { .. }, _) => {
                 self.by_both(&mut cycle, &start, &|cycle, start| {
-                    place::grazing(cycle, self.system(), &start.states, start.value, &others)
+                    grazing::grazing(cycle, self.system(), start, &others)
                 })?
             }
             (kind, _) => return Err(SensitivityError::Kind { kind }.into()),
         };
-        let place = self.placed(&both);
         let mut told = self.told(0.0);
+        self.tell_place(&both, &mut told);
+        told.kind = Some(event.kind);
+        let is_singular = event.kind == EventKind::Fold || crosses == Some(Crosses::One);
+        if rows.is_empty() {
+            if !is_singular {
+                let condition = self.condition_at(&mut cycle, &both.fine);
+                told.condition = unless_cancelled(condition)?.unwrap_or(0.0);
+            }
+            return Ok(told);
+        }
+        if event.kind == EventKind::Fold {
+            let why = format!(
+                "at a fold derivatives at a fixed {} are unbounded",
+                told.varied
+            );
+            told.lack(&["measured"], multipliers, &why);
+            self.add_of_fold(&mut cycle, &both, rows, &mut told)?;
+        } else if is_singular {
+            let why = "the equations of the orbit are singular where another branch crosses";
+            told.lack(&["measured", "moving"], multipliers, why);
+        } else {
+            let added = self.add_at_event(&mut cycle, &both, rows, multipliers, &mut told);
+            told.unless_failed(&["measured", "moving"], multipliers, added)?;
+        }
+        Ok(told)
+    }
+
+    /// The place with its derivatives, or what breaks a symmetry.
+    fn tell_place(&self, both: &Found, told: &mut Sensitivities) {
+        let place = self.placed(both);
         for (name, place) in told.variables.iter().zip(&place) {
             if place.is_some_and(|place| place.value.is_nan()) {
                 let why = "it breaks the symmetry: beside its value no branches cross";
@@ -59,29 +91,13 @@ impl Sensitive<'_> {
             }
         }
         told.place = place.into_iter().map(known).collect();
-        told.kind = Some(event.kind);
-        if rows.is_empty() {
-            return Ok(told);
-        }
-        match (event.kind, crosses) {
-            (EventKind::Fold, _) => {
-                let why = format!(
-                    "at a fold derivatives at a fixed {} are unbounded",
-                    told.varied
-                );
-                told.missing.push(Missing::new("measured", &why));
-                if multipliers {
-                    told.missing.push(Missing::new("multipliers", &why));
-                }
-                self.add_of_fold(&mut cycle, &both, rows, &mut told)?;
-            }
-            (_, Some(Crosses::One)) => {
-                let why = "the equations of the orbit are singular where another branch crosses";
-                told.missing.push(Missing::new("measured", why));
-            }
-            _ => self.add_at_event(&mut cycle, &both, rows, multipliers, &mut told)?,
-        }
-        Ok(told)
+    }
+
+    /// How far the equations at an event are from singular ones.
+    fn condition_at(&self, cycle: &mut Cycle, found: &Moving) -> Result<f64, Error> {
+        cycle.set(self.varied, found.value)?;
+        let evaluated = cycle.evaluate(&found.states, &[], &[])?;
+        Ok(condition(&cycle.scaled(&evaluated.jacobian))?)
     }
 
     /// An event from a start on by two flows.
@@ -125,7 +141,8 @@ impl Sensitive<'_> {
     ) -> Result<(), Error> {
         let mut start = fine.start();
         self.settle(cycle, &mut start)?;
-        let near = beside.as_ref().map_or_else(|| start.clone(), Moving::start);
+        let beside = beside.as_ref().unwrap_or(fine);
+        let near = beside.near.clone().unwrap_or_else(|| beside.start());
         let (mut at, read) = self.at(cycle, &start, &near, rows)?;
         if multipliers {
             self.add_multipliers(cycle, &start, &read, &mut at)?;
@@ -167,7 +184,10 @@ impl Sensitive<'_> {
         };
         let (start, directions) = (fine.start(), &bends.directions);
         let vanishes = cycle.vanishes();
-        let read = self.read_along(cycle, &start, rows, FINE.1, directions, vanishes)?;
+        let read = self.read_along(cycle, &start, rows, FINE.1, directions, vanishes);
+        let Some(read) = told.unless_failed(&["moving"], false, read)? else {
+            return Ok(());
+        };
         let beside = beside
             .as_ref()
             .map(|beside| self.read_of_fold(beside, rows));
@@ -225,17 +245,36 @@ fn known(place: Option<Derivative>) -> Option<Derivative> {
 
 impl Sensitivities {
     fn add_moving(&mut self, row: &Row, value: f64, by: Vec<Derivative>) {
-        if value.is_nan() {
-            let why = "it is of a motion that vanishes, where it has no derivative";
-            self.missing.push(Missing::new(&row.name, why));
-            return;
+        let moving = self.known(row, value, by);
+        self.moving.extend(moving);
+    }
+
+    /// Says why some of it is not known.
+    fn lack(&mut self, what: &[&str], multipliers: bool, why: &str) {
+        let multipliers = multipliers.then_some("multipliers");
+        let all = what.iter().copied().chain(multipliers);
+        self.missing.extend(all.map(|what| Missing::new(what, why)));
+    }
+
+    /// What was computed; what failed is said to be missing, and what is known already is kept.
+    ///
+    /// # Errors
+    /// If it was cancelled.
+    fn unless_failed<T>(
+        &mut self,
+        what: &[&str],
+        multipliers: bool,
+        computed: Result<T, Error>,
+    ) -> Result<Option<T>, Error> {
+        match computed {
+            Ok(computed) => Ok(Some(computed)),
+            Err(error) if error.kind() == ErrorKind::Cancelled => Err(error),
+            Err(error) => {
+                let why = crate::error::chain(&error).to_string();
+                self.lack(what, multipliers, &why);
+                Ok(None)
+            }
         }
-        self.moving.push(Measured {
-            name: row.name.clone(),
-            unit: row.unit.clone(),
-            value,
-            by,
-        });
     }
 }
 

@@ -3,8 +3,8 @@
 //! An orbit by whatever method is taken as a state that returns to itself, and everything is differentiated along its motion in time:
 //! exponents, levels, the motion of switches, one-sided limits at them. `asked` has the questions, `rows` what is read off, `orbit` and
 //! `events` the answers. `cycle` has the equations, `slopes` signals at one instant, `scan` where an orbit switches and has extremes,
-//! `places` where it is looked at, `reader` and `moments` what is read off, `place` how folds and touches move, `multipliers` and `change` how multipliers do, `critical` where they
-//! cross the unit circle.
+//! `places` where it is looked at, `landing` switches, `reader` and `moments` what is read off, `place` and `grazing` how folds and touches
+//! move, `multipliers` and `change` how multipliers do, `critical` where they cross the unit circle.
 
 mod asked;
 mod change;
@@ -12,6 +12,8 @@ mod critical;
 mod cycle;
 mod error;
 mod events;
+mod grazing;
+mod landing;
 mod moments;
 mod multipliers;
 mod orbit;
@@ -54,7 +56,8 @@ pub struct Measured {
     /// Its value.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub value: f64,
-    /// Its derivative by each of [`Sensitivities::variables`], all others fixed.
+    /// Its derivative by each of [`Sensitivities::variables`], all others fixed; not a number by one for which it has another derivative to each
+    /// side, which [`Sensitivities::missing`] says.
     pub by: Vec<Derivative>,
 }
 

@@ -2,6 +2,11 @@
 
 use crate::orbit::observe::Measure;
 
+/// Derivatives of two extremes that differ by no more than this part are the same: flows leave less.
+const ALIKE: f64 = 1e-6;
+/// Two extremes of a symmetric motion differ by no more than so many times what a flow leaves: resonance makes that larger.
+const SYMMETRIC: f64 = 100.0;
+
 /// A number, and its derivatives along all directions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Slope {
@@ -47,6 +52,8 @@ pub(super) struct Moments {
     pub(super) mean: Slope,
     pub(super) square: Slope,
     pub(super) series: Vec<[Slope; 2]>,
+    /// It is the force of a contact that never meets.
+    pub(super) is_nothing: bool,
 }
 
 impl Moments {
@@ -91,32 +98,36 @@ impl Moments {
         (amplitude > least).then_some((parts, amplitude))
     }
 
-    /// What is asked of the signal; `None` where it has no derivative, or is one of contacts.
+    /// Largest and smallest value, if they are apart by more than a part of their size: at rest any motion has a larger one. What is
+    /// nothing stays so.
+    fn extremes(&self, vanishes: f64) -> Option<[&Slope; 2]> {
+        let (a, b) = (self.largest.as_ref()?, self.smallest.as_ref()?);
+        let size = a.value.abs().max(b.value.abs());
+        let moves = a.value - b.value > vanishes * size;
+        (moves || self.is_nothing).then_some([a, b])
+    }
+
+    /// What is asked of the signal; `None` where it has no derivative, or is one of contacts. A derivative that is no number is one to each
+    /// side.
     pub(super) fn measure(&self, measure: Measure, vanishes: f64) -> Option<Slope> {
-        let (largest, smallest) = (self.largest.as_ref(), self.smallest.as_ref());
         let rms = || {
             let rms = self.square.value.max(0.0).sqrt();
             (rms > 0.0).then(|| Slope::of([&self.square], rms, [0.5 / rms]))
         };
         Some(match measure {
             Measure::PeakToPeak => {
-                let (a, b) = (largest?, smallest?);
+                let [a, b] = self.extremes(vanishes)?;
                 Slope::of([a, b], a.value - b.value, [1.0, -1.0])
             }
-            Measure::Maximum => largest?.clone(),
-            Measure::Minimum => smallest?.clone(),
+            Measure::Maximum => self.extremes(vanishes)?[0].clone(),
+            Measure::Minimum => self.extremes(vanishes)?[1].clone(),
             Measure::Mean => self.mean.clone(),
             Measure::Rms => rms()?,
             Measure::CrestFactor => {
-                let (a, b, rms) = (largest?, smallest?, rms()?);
-                let far = if a.value >= -b.value {
-                    (a, 1.0)
-                } else {
-                    (b, -1.0)
-                };
-                let (value, sign) = (far.0.value * far.1, far.1);
-                let crest = value / rms.value;
-                Slope::of([far.0, &rms], crest, [sign / rms.value, -crest / rms.value])
+                let ([a, b], rms) = (self.extremes(vanishes)?, rms()?);
+                let far = farthest(a, b, vanishes);
+                let crest = far.value / rms.value;
+                Slope::of([&far, &rms], crest, [1.0 / rms.value, -crest / rms.value])
             }
             Measure::Amplitude(harmonic) => {
                 let ([c, s], amplitude) = self.harmonic(harmonic, vanishes)?;
@@ -130,6 +141,29 @@ impl Moments {
             }
             _ => return None,
         })
+    }
+}
+
+/// The larger one of the sizes of a largest and a smallest value. Where these are the same within a part, and do not grow alike, it has a
+/// derivative to each side and none.
+fn farthest(largest: &Slope, smallest: &Slope, vanishes: f64) -> Slope {
+    let (a, b) = (largest.value, -smallest.value);
+    let is_both = (a - b).abs() <= SYMMETRIC * vanishes * a.abs().max(b.abs());
+    let slopes = largest.by.iter().zip(&smallest.by);
+    let by = slopes.map(|(&a_slope, smallest)| {
+        let b_slope = -smallest;
+        let apart = (a_slope - b_slope).abs();
+        if is_both && apart > ALIKE * a_slope.abs().max(b_slope.abs()) {
+            f64::NAN
+        } else if a >= b {
+            a_slope
+        } else {
+            b_slope
+        }
+    });
+    Slope {
+        value: a.max(b),
+        by: by.collect(),
     }
 }
 

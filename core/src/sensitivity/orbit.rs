@@ -316,7 +316,7 @@ impl<'p> Sensitive<'p> {
         let (slopes, places) = self.looked_at(cycle, start, rows, nodes)?;
         let evaluated = cycle.evaluate(&start.states, &self.variables, &places.stops)?;
         let along = self.directions(&evaluated)?;
-        let condition = condition(&evaluated.jacobian)?;
+        let condition = condition(&cycle.scaled(&evaluated.jacobian))?;
         let reader = Reader::new(&places, &slopes, &evaluated, &self.variables, &along, cycle);
         let slopes = self.rows_of(&reader, &slopes, rows, vanishes);
         let arcs = places.scan.arcs.into_iter();
@@ -384,8 +384,11 @@ impl<'p> Sensitive<'p> {
                 let pieces = self.model.pieces[contact];
                 return reader.on_pieces(contact, pieces)[piece - 1].clone();
             }
-            let signal = slopes.position(row.asked);
-            let measured = signal.and_then(|signal| moments[signal].measure(row.measure, vanishes));
+            let own = slopes.position(row.asked).map(|signal| &moments[signal]);
+            let measured = match row.measure {
+                Measure::Impulse => own.map(|own| reader.over_period(&own.mean)),
+                measure => own.and_then(|own| own.measure(measure, vanishes)),
+            };
             measured.unwrap_or_else(none)
         });
         measured.collect()
@@ -393,19 +396,31 @@ impl<'p> Sensitive<'p> {
 }
 
 impl Sensitivities {
-    /// Adds what was read off. An amplitude that vanishes has no derivative, nor has its phase: that is said.
+    /// Adds what was read off.
     pub(super) fn add(&mut self, row: &Row, value: f64, by: Vec<Derivative>) {
+        let measured = self.known(row, value, by);
+        self.measured.extend(measured);
+    }
+
+    /// What was read off. An amplitude that vanishes has no derivative, nor has its phase, nor an extreme of what is at rest; and one that is another
+    /// one to each side is none: that is said.
+    pub(super) fn known(&mut self, row: &Row, value: f64, by: Vec<Derivative>) -> Option<Measured> {
         if value.is_nan() {
             let why = "it is of a motion that vanishes, where it has no derivative";
             self.missing.push(Missing::new(&row.name, why));
-            return;
+            return None;
         }
-        self.measured.push(Measured {
+        for (variable, _) in (self.variables.iter().zip(&by)).filter(|(_, by)| by.value.is_nan()) {
+            let why = "it has another derivative to each side: its largest and its smallest value are of one size, or several gaps switch at once";
+            let what = format!("{} by {variable}", row.name);
+            self.missing.push(Missing::new(what, why));
+        }
+        Some(Measured {
             name: row.name.clone(),
             unit: row.unit.clone(),
             value,
             by,
-        });
+        })
     }
 }
 
@@ -422,8 +437,8 @@ pub(super) fn apart(fine: &Slope, coarse: Option<&Slope>, rounding: f64) -> Vec<
     by.collect()
 }
 
-/// How far equations are from singular ones, as a part of their size.
-fn condition(jacobian: &DMatrix<f64>) -> Result<f64, SensitivityError> {
+/// How far equations in units of states are from singular ones, as a part of their size.
+pub(super) fn condition(jacobian: &DMatrix<f64>) -> Result<f64, SensitivityError> {
     let inverse = jacobian.clone().lu().try_inverse();
     let inverse = inverse.ok_or(SensitivityError::Singular)?;
     Ok(1.0 / (jacobian.norm() * inverse.norm()))

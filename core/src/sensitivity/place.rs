@@ -1,41 +1,28 @@
-//! Where an event is, and how its place moves with every variable.
+//! Where a fold is, and how its place moves with every variable.
 //!
 //! A fold is a zero of the tangent's component along what is varied, found by secants along the branch; it moves as (4) of
-//! [`cycle`](super::cycle) says. An orbit grazes where a gap has an extreme on a level,
+//! [`cycle`](super::cycle) says.
 //!
-//! ```text
-//! g(s, lambda, p) = gap(tau*) - level = 0,   gap'(tau*) = 0,   dlambda/dp = - (g_s s_p + g_p) / (g_s s_lambda + g_lambda),   (1)
-//! ```
-//!
-//! with the derivatives of the states at a fixed value of what is varied, since the place `tau*` of an extreme counts by its square only.
-//!
-//! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 3; di Bernardo, Budd, Champneys and
-//! Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (grazing).
-
-use std::sync::Arc;
+//! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 3.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::cycle::{AtStop, Cycle, Evaluated, Stop};
+use super::cycle::{Cycle, Evaluated};
 use super::error::SensitivityError;
 use super::orbit::Start;
-use super::scan::{Scan, Turn};
-use super::slopes::{Direction, Slopes};
-use crate::system::{System, Variable};
+use crate::system::Variable;
 
 /// Secants along the branch, and corrections to it.
-const STEPS: usize = 30;
+pub(super) const STEPS: usize = 30;
 /// A fold is looked for within this length of the branch, where the orbit's size and the value of what is varied are one.
 const FARTHEST: f64 = 0.5;
 /// So many steps in a row that come no nearer are the last.
 const IDLE: usize = 3;
 /// The first step, and the one below which the place does not change any more.
 const FIRST: f64 = 1e-5;
-const LAST: f64 = 1e-12;
+pub(super) const LAST: f64 = 1e-12;
 /// A fold is one if the tangent's component along what is varied fell below this.
 const LEVEL: f64 = 1e-7;
-/// An extreme of a gap is taken to be on a level within this part of the orbit.
-const TOUCH: f64 = 1e-2;
 
 /// A place with its derivatives by variables.
 #[derive(Debug, Clone)]
@@ -46,6 +33,8 @@ pub(super) struct Moving {
     pub(super) by: Vec<f64>,
     /// What is known of their errors without another flow.
     pub(super) errors: Vec<f64>,
+    /// An orbit beside it, that tells what being beside the place changes, where the orbit is not at the place itself.
+    pub(super) near: Option<Start>,
 }
 
 impl Moving {
@@ -115,7 +104,8 @@ pub(super) fn fold(
     cycle.set(cycle.varied, value)?;
     let evaluated = cycle.evaluate(states, &[cycle.varied], &[])?;
     // Beside a fold the null vector is next to the tangent, and never across it.
-    let null = null_vectors(&evaluated.jacobian)?.1;
+    let null = null_vectors(&cycle.scaled(&evaluated.jacobian))?.1;
+    let null = cycle.from_units(&null);
     let border = DVector::from_iterator(n + 1, null.iter().copied().chain([0.0]));
     let tangent = cycle.tangent(&evaluated, Some(&border))?;
     let scale = cycle.size(states).max(f64::MIN_POSITIVE) / cycle.size(&tangent.as_slice()[..n]);
@@ -157,6 +147,7 @@ pub(super) fn fold(
         value,
         by,
         errors: vec![0.0; variables.len()],
+        near: None,
     })
 }
 
@@ -170,8 +161,9 @@ fn moves_of_fold(
         .chain(variables.iter().copied())
         .collect();
     let evaluated = cycle.evaluate(states, &asked, &[])?;
-    let left = null_vectors(&evaluated.jacobian)?.0;
-    let along: Vec<f64> = evaluated.by.iter().map(|by| left.dot(by)).collect();
+    let left = null_vectors(&cycle.scaled(&evaluated.jacobian))?.0;
+    let along = evaluated.by.iter().map(|by| left.dot(&cycle.in_units(by)));
+    let along: Vec<f64> = along.collect();
     Ok(along[1..].iter().map(|by| -by / along[0]).collect())
 }
 
@@ -202,128 +194,4 @@ pub(super) fn null_vectors(
         right = next.rows(0, n).normalize();
     }
     Ok((left, right))
-}
-
-/// The orbit near states that grazes, and how its place moves.
-///
-/// # Errors
-/// If there is none, or its motion cannot be continued.
-pub(super) fn grazing(
-    cycle: &mut Cycle,
-    system: &Arc<dyn System>,
-    states: &[f64],
-    value: f64,
-    variables: &[Variable],
-) -> Result<Moving, SensitivityError> {
-    let mut slopes = Slopes::new(system, &[]);
-    let (mut states, mut value) = (states.to_vec(), value);
-    let mut touch: Option<(usize, usize, Turn)> = None;
-    for _ in 0..STEPS {
-        cycle.set(cycle.varied, value)?;
-        cycle.solve(&mut states)?;
-        slopes.set(&cycle.values, cycle.omega);
-        let scan = Scan::of(cycle, &slopes, &states, true)?;
-        let near = nearest(&slopes, &scan, touch)
-            .filter(|(_, distance)| distance.abs() <= TOUCH * cycle.size(&states));
-        let ((contact, level, turn), distance) = near.ok_or(SensitivityError::NoTouch)?;
-        if slopes.jumps(contact, level) {
-            return Err(SensitivityError::Jumps);
-        }
-        let arc = &scan.arcs[turn.arc];
-        let stop = Stop {
-            segment: arc.segment,
-            phase: turn.phase,
-        };
-        let grows = distances(
-            cycle,
-            &slopes,
-            &states,
-            &[cycle.varied],
-            stop,
-            |at, along| {
-                let at = slopes.at(turn.phase, &at.state, &arc.pieces);
-                slopes.distance_along(&at, contact, level, along)[0]
-            },
-        )?;
-        let step = -distance / grows[0];
-        touch = Some((contact, level, turn));
-        if step.abs() <= LAST * value.abs() || !step.is_finite() {
-            let asked: Vec<Variable> = std::iter::once(cycle.varied)
-                .chain(variables.iter().copied())
-                .collect();
-            let grows = distances(cycle, &slopes, &states, &asked, stop, |at, along| {
-                let at = slopes.at(turn.phase, &at.state, &arc.pieces);
-                slopes.distance_along(&at, contact, level, along)[0]
-            })?;
-            let by = grows[1..].iter().map(|by| -by / grows[0]).collect();
-            return Ok(Moving {
-                states,
-                value,
-                by,
-                errors: vec![0.0; variables.len()],
-            });
-        }
-        value += step.clamp(-0.01 * value.abs(), 0.01 * value.abs());
-    }
-    Err(SensitivityError::NoTouch)
-}
-
-/// How a distance at a stop grows with variables, at a fixed value of all others.
-fn distances(
-    cycle: &mut Cycle,
-    slopes: &Slopes,
-    states: &[f64],
-    variables: &[Variable],
-    stop: Stop,
-    of: impl Fn(&AtStop, Direction<'_>) -> f64,
-) -> Result<Vec<f64>, SensitivityError> {
-    let order = cycle.order();
-    let evaluated = cycle.evaluate(states, variables, &[stop])?;
-    let lu = evaluated.jacobian.clone().lu();
-    let at = &evaluated.stops[0];
-    let grows = variables.iter().enumerate().map(|(index, &variable)| {
-        let moved = lu
-            .solve(&-&evaluated.by[index])
-            .ok_or(SensitivityError::Singular)?;
-        let begin = &moved.as_slice()[stop.segment * order..][..order];
-        let own = (0..variables.len()).map(|other| f64::from(u8::from(other == index)));
-        let mut here = vec![0.0; order];
-        at.moved(begin, own, &mut here);
-        let by = slopes.by(variable);
-        Ok(of(
-            at,
-            Direction {
-                state: &here,
-                by: Some(&by),
-                phase: 0.0,
-            },
-        ))
-    });
-    grows.collect()
-}
-
-/// The extreme of a gap that is nearest to a level, and how far it is above it: of the contact, the level and the phase of the last one, if
-/// that is known.
-fn nearest(
-    slopes: &Slopes,
-    scan: &Scan,
-    last: Option<(usize, usize, Turn)>,
-) -> Option<((usize, usize, Turn), f64)> {
-    let mut found: Option<((usize, usize, Turn), f64, f64)> = None;
-    for turn in &scan.turns {
-        for level in 0..slopes.levels(turn.contact) {
-            let distance = turn.gap - slopes.level(turn.contact, level);
-            let away = match last {
-                None => distance.abs(),
-                Some((contact, own, before)) if contact == turn.contact && own == level => {
-                    (turn.phase - before.phase).abs()
-                }
-                Some(_) => continue,
-            };
-            if found.as_ref().is_none_or(|(_, _, least)| away < *least) {
-                found = Some(((turn.contact, level, *turn), distance, away));
-            }
-        }
-    }
-    found.map(|(place, distance, _)| (place, distance))
 }

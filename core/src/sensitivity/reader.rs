@@ -13,6 +13,7 @@
 use nalgebra::DVector;
 
 use super::cycle::{Cycle, Evaluated};
+use super::landing::Landing;
 use super::moments::{Moments, Slope};
 use super::places::Places;
 use super::scan::{End, Extreme};
@@ -34,12 +35,13 @@ pub(super) struct Reader<'r> {
     pub(super) slopes: &'r Slopes,
     pub(super) evaluated: &'r Evaluated,
     /// How the coefficients move along each direction.
-    by: Vec<By>,
+    pub(super) by: Vec<By>,
     pub(super) directions: &'r [Along],
     order: usize,
+    pub(super) landings: Vec<Landing>,
     /// How each switch moves along each direction.
-    shifts: Vec<Vec<f64>>,
-    period: usize,
+    pub(super) shifts: Vec<Vec<f64>>,
+    pub(super) period: usize,
 }
 
 impl<'r> Reader<'r> {
@@ -62,43 +64,23 @@ impl<'r> Reader<'r> {
             by: by.collect(),
             directions,
             order: cycle.order(),
+            landings: Vec::new(),
             shifts: Vec::new(),
             period: cycle.period,
         };
-        let switches = 0..places.switches.len();
-        reader.shifts = switches.map(|index| reader.shift(index)).collect();
+        reader.landings = reader.landings();
+        let landings = reader.landings.iter();
+        reader.shifts = landings.flat_map(|own| reader.shifts_of(own)).collect();
         reader
     }
 
     /// How the state at a stop moves along a direction.
-    fn moved(&self, stop: usize, direction: usize, moved: &mut [f64]) {
+    pub(super) fn moved(&self, stop: usize, direction: usize, moved: &mut [f64]) {
         let along = &self.directions[direction];
         let first = self.places.stops[stop].segment * self.order;
         let begin = &along.states.as_slice()[first..][..self.order];
         let weights = along.weights.iter().copied();
         self.evaluated.stops[stop].moved(begin, weights, moved);
-    }
-
-    /// (1)
-    fn shift(&self, index: usize) -> Vec<f64> {
-        let switch = &self.places.scan.switches[index];
-        let stop = self.places.switches[index];
-        let pieces = &self.places.scan.arcs[switch.arc].pieces;
-        let state = &self.evaluated.stops[stop].state;
-        let at = self.slopes.at(self.places.stops[stop].phase, state, pieces);
-        let mut moved = vec![0.0; self.order];
-        let of = |direction: usize| {
-            self.moved(stop, direction, &mut moved);
-            let along = Direction {
-                state: &moved,
-                by: Some(&self.by[direction]),
-                phase: 0.0,
-            };
-            let (contact, level) = (switch.contact, switch.level);
-            let [grows, rate] = self.slopes.distance_along(&at, contact, level, along);
-            -grows / rate
-        };
-        (0..self.directions.len()).map(of).collect()
     }
 
     /// Writes the signals at a stop on the pieces of an arc, and how they move along all directions.
@@ -121,16 +103,6 @@ impl<'r> Reader<'r> {
         }
     }
 
-    /// Signals at a stop on the pieces of an arc.
-    fn values(&self, stop: usize, arc: usize) -> Vec<f64> {
-        let pieces = &self.places.scan.arcs[arc].pieces;
-        let state = &self.evaluated.stops[stop].state;
-        let at = self.slopes.at(self.places.stops[stop].phase, state, pieces);
-        let mut values = vec![0.0; self.slopes.count()];
-        self.slopes.write(&at, &mut values);
-        values
-    }
-
     /// What is read off every signal.
     pub(super) fn moments(&self) -> Vec<Moments> {
         let (directions, needs) = (self.directions.len(), &self.places.needs);
@@ -141,6 +113,7 @@ impl<'r> Reader<'r> {
             mean: zero.clone(),
             square: zero.clone(),
             series: vec![[zero.clone(), zero.clone()]; harmonics],
+            is_nothing: false,
         };
         let mut moments: Vec<Moments> = needs.harmonics.iter().map(empty).collect();
         let mut room = Signals::new(self.slopes, directions);
@@ -165,27 +138,14 @@ impl<'r> Reader<'r> {
                 let [largest, smallest] = [0, 1].map(|which| self.extreme(signal, which));
                 (moments.largest, moments.smallest) = (largest, smallest);
             }
+            let mut arcs = self.places.scan.arcs.iter();
+            moments.is_nothing = arcs.all(|arc| self.slopes.is_nothing(signal, &arc.pieces));
         }
         moments
     }
 
-    /// The sum of (4).
-    fn add_jumps(&self, moments: &mut [Moments]) {
-        for (index, switch) in self.places.scan.switches.iter().enumerate() {
-            let stop = self.places.switches[index];
-            let before = self.values(stop, switch.arc);
-            let after = self.values(stop, switch.arc + 1);
-            let segment = self.places.stops[stop].segment;
-            let passed = self.passed(segment);
-            let angle = (passed + self.places.stops[stop].phase) / self.period as f64;
-            for (signal, moments) in moments.iter_mut().enumerate() {
-                moments.jump([before[signal], after[signal]], &self.shifts[index], angle);
-            }
-        }
-    }
-
     /// What is added to a phase in a segment, for that of the orbit: segments are of equal length.
-    fn passed(&self, segment: usize) -> f64 {
+    pub(super) fn passed(&self, segment: usize) -> f64 {
         let arcs = self.places.scan.arcs.iter();
         let mut firsts = arcs.filter(|arc| arc.segment <= segment);
         let (mut passed, mut last) = (0.0, None);
@@ -219,42 +179,38 @@ impl<'r> Reader<'r> {
             End::Last => extreme.arc,
             End::First => extreme.arc.checked_sub(1)?,
         };
-        let scan = &self.places.scan;
-        let index = scan
-            .switches
-            .iter()
-            .position(|switch| switch.arc == ends_at)?;
-        let stop = self.places.switches[index];
-        let (state, phase) = (
-            &self.evaluated.stops[stop].state,
-            self.places.stops[stop].phase,
-        );
-        // The state moves with the switch alike on both sides of it: that of the arc before is known.
-        let before = self.slopes.at(phase, state, &scan.arcs[ends_at].pieces);
-        let mut rate = vec![0.0; self.order];
-        self.slopes.write_rate(&before, &mut rate);
-        let at = self.slopes.at(phase, state, &scan.arcs[extreme.arc].pieces);
+        let mut landings = self.landings.iter();
+        let landing = landings.find(|landing| landing.arc == ends_at)?;
+        let shifts = self.shift_of_limit(landing, signal);
+        let at = self.beside(landing, extreme.arc);
         let mut slopes = vec![0.0; self.slopes.count()];
         let (mut with, mut moved) = (vec![0.0; self.order], self.slopes.moved());
-        let by = (0..self.directions.len()).map(|direction| {
-            let shift = self.shifts[index][direction];
-            self.moved(stop, direction, &mut with);
-            for (s, r) in with.iter_mut().zip(&rate) {
+        let by = shifts.iter().enumerate().map(|(direction, &shift)| {
+            // The state moves with the switch alike on both sides of it: that of the arc before is known.
+            with.copy_from_slice(&landing.moved[direction]);
+            for (s, r) in with.iter_mut().zip(&landing.rate) {
                 *s += r * shift;
             }
-            let along = Direction {
-                state: &with,
-                by: Some(&self.by[direction]),
-                phase: shift,
-            };
-            let out = slopes.iter_mut();
-            self.slopes.along(&at, along, &mut moved, out);
+            let along = self.direction(direction, &with, shift);
+            self.slopes.along(&at, along, &mut moved, slopes.iter_mut());
             slopes[signal]
         });
         Some(Slope {
             value: extreme.value,
             by: by.collect(),
         })
+    }
+
+    /// Integrals over the period of the orbit, from means: with its length `T = 2 pi n / Omega`, `(T m)' = T (m' - m Omega' / Omega)`.
+    pub(super) fn over_period(&self, mean: &Slope) -> Slope {
+        let base = self.slopes.base;
+        let length = std::f64::consts::TAU * self.period as f64 / base;
+        let both = mean.by.iter().zip(&self.by);
+        let by = both.map(|(slope, by)| length * (slope - mean.value * by.base / base));
+        Slope {
+            value: length * mean.value,
+            by: by.collect(),
+        }
     }
 
     /// The part of the period that a gap is on each piece of its law.

@@ -1,5 +1,6 @@
 //! What is read off orbits, row by row.
 
+use super::Missing;
 use super::places::Needs;
 use super::slopes::Asked;
 use crate::branches::branch::{Model, Source};
@@ -32,9 +33,14 @@ pub(super) fn all(model: &Model) -> Vec<Row> {
     });
     let contacts = model.contacts.iter().zip(&model.pieces);
     let of_contacts = contacts.flat_map(|(name, &pieces)| {
-        let extremes = [Measure::Maximum, Measure::Minimum, Measure::Mean];
+        let usual = [
+            Measure::Maximum,
+            Measure::Minimum,
+            Measure::Mean,
+            Measure::Impulse,
+        ];
         let pieces = (1..=pieces).map(Measure::OnPiece);
-        let measures = extremes.into_iter().chain(pieces);
+        let measures = usual.into_iter().chain(pieces);
         measures.map(|measure| (name.clone(), measure))
     });
     let wanted = of_motions.chain(of_contacts);
@@ -51,6 +57,27 @@ pub(super) fn all(model: &Model) -> Vec<Row> {
     rows.chain([power]).collect()
 }
 
+/// What is asked for as rows, and what of it has no derivative at any orbit: a whole number.
+///
+/// # Errors
+/// If nothing has such a name.
+pub(super) fn with_derivatives(
+    model: &Model,
+    wanted: &[Wanted],
+) -> Result<(Vec<Row>, Vec<Missing>), Error> {
+    let (mut rows, mut missing) = (Vec::new(), Vec::new());
+    for wanted in wanted {
+        if wanted.measure == Measure::Impacts {
+            model.check(wanted)?;
+            let why = "a number of impacts is whole, and has no derivative";
+            missing.push(Missing::new(wanted.to_string(), why));
+        } else {
+            rows.push(row(model, wanted)?);
+        }
+    }
+    Ok((rows, missing))
+}
+
 /// What is asked for as a row.
 ///
 /// # Errors
@@ -60,9 +87,7 @@ pub(super) fn row(model: &Model, wanted: &Wanted) -> Result<Row, Error> {
         return Ok(row);
     }
     let source = model.measurable(wanted)?;
-    let without = matches!(wanted.measure, Measure::Impacts | Measure::Impulse);
-    let of_motion = matches!(wanted.measure, Measure::OnPiece(_));
-    if without || (of_motion && !matches!(source, Source::Contact(_))) {
+    if wanted.measure == Measure::Impacts {
         return Err(RequestError::NoContactMeasure {
             name: wanted.name.clone(),
             measure: wanted.measure.in_words(),
@@ -126,7 +151,7 @@ pub(super) fn needs(rows: &[Row], asked: &[Asked], nodes: usize) -> Needs {
         match row.measure {
             Measure::PeakToPeak | Measure::Maximum | Measure::Minimum => needs.extremes = true,
             Measure::CrestFactor => (needs.extremes, needs.integrals) = (true, true),
-            Measure::Mean | Measure::Rms => needs.integrals = true,
+            Measure::Mean | Measure::Rms | Measure::Impulse => needs.integrals = true,
             Measure::Amplitude(h) | Measure::Phase(h) => {
                 let signals = needs.harmonics.iter_mut().zip(asked);
                 let own = signals.filter(|(_, asked)| **asked == row.asked);

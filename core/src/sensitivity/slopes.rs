@@ -21,6 +21,9 @@ use crate::laws::single::Single;
 use crate::model::layout::{Entry, Layout, Term};
 use crate::system::{Part, Place, Signal, System, Variable, Wave};
 
+/// How far beside a level slopes are taken that are none on it, as a part of the motion over a radian.
+const INSIDE: f64 = 1e-10;
+
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Asked {
@@ -541,6 +544,58 @@ impl Slopes {
         }
     }
 
+    /// Writes how the rate of the state, by the phase, moves along a direction.
+    pub(super) fn rate_along(
+        &self,
+        at: &Instant,
+        direction: Direction<'_>,
+        room: &mut Moved,
+        out: &mut [f64],
+    ) {
+        self.move_forces(at, direction, room);
+        let n = self.layout.coordinates;
+        let velocities = at.state[n..].iter().zip(&direction.state[n..]);
+        let by_time = velocities.chain(at.acceleration.iter().zip(&room.acceleration));
+        let base = direction.by.map_or(0.0, |by| by.base) / self.base;
+        for (out, (x, dx)) in out.iter_mut().zip(by_time) {
+            *out = (dx - x * base) / self.base;
+        }
+    }
+
+    /// Where a gap stands on a level at which its force has no slope, that of its own piece beside it: along a motion that stays on the level what
+    /// it is multiplied by is zero.
+    pub(super) fn step_inside(&self, at: &mut Instant) {
+        for (index, contact) in self.contacts.iter().enumerate() {
+            if at.forces[index].by_gap.is_finite() {
+                continue;
+            }
+            let piece = at.pieces[index];
+            let [gap, rate] = at.gaps[index];
+            let lower = piece.checked_sub(1).map(|level| contact.levels[level]);
+            let step = INSIDE * (rate / self.base).abs();
+            let inside = if lower == Some(gap) {
+                gap + step
+            } else {
+                gap - step
+            };
+            let law = self.system.law(self.layout.contacts[index].law);
+            let on = On::Piece(piece);
+            let beside = Single::of(law, on, &contact.arguments, [inside, rate]);
+            at.gaps[index][0] = inside;
+            at.forces[index].by_gap = beside.by_gap;
+            at.forces[index].by_rate = beside.by_rate;
+        }
+    }
+
+    /// Whether a signal is a force that is nothing on these pieces.
+    pub(super) fn is_nothing(&self, signal: usize, pieces: &[usize]) -> bool {
+        let Asked::Contact(contact) = self.asked[signal] else {
+            return false;
+        };
+        let law = self.system.law(self.layout.contacts[contact].law);
+        law.facts().pieces[pieces[contact]].force == Variation::Zero
+    }
+
     /// Writes all signals.
     pub(super) fn write(&self, at: &Instant, out: &mut [f64]) {
         for (index, out) in out.iter_mut().enumerate() {
@@ -641,6 +696,18 @@ impl Slopes {
             }
         }
         [change, at.gaps[contact][1] / self.base]
+    }
+
+    /// How the rate of a gap grows with the phase along the motion.
+    pub(super) fn bend(&self, at: &Instant, contact: usize) -> f64 {
+        let mut rate = vec![0.0; self.order()];
+        self.write_rate(at, &mut rate);
+        let motion = Direction {
+            state: &rate,
+            by: None,
+            phase: 1.0,
+        };
+        self.gap_along(contact, at, motion)[1]
     }
 
     /// A level of the law of a contact.

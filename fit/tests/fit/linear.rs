@@ -17,12 +17,12 @@ hertzian::oscillator! {
     }
 }
 
-fn omegas() -> Vec<f64> {
+pub fn omegas() -> Vec<f64> {
     (0..16).map(|i| 1.2 + 0.1 * f64::from(i)).collect()
 }
 
 /// Amplitude and phase lag.
-fn response([m, c, k, f]: [f64; 4], omega: f64) -> [f64; 2] {
+pub fn response([m, c, k, f]: [f64; 4], omega: f64) -> [f64; 2] {
     let (real, imaginary) = (k - m * omega * omega, c * omega);
     [f / real.hypot(imaginary), imaginary.atan2(real)]
 }
@@ -35,11 +35,11 @@ fn amplitudes(truth: [f64; 4]) -> DataSet {
     DataSet::new("x:p2p", omegas(), values)
 }
 
-fn value(fitted: &Fitted, name: &str) -> f64 {
+pub fn value(fitted: &Fitted, name: &str) -> f64 {
     fitted.estimate(name).expect(name).value
 }
 
-const TRUTH: [f64; 4] = [1.1, 0.15, 4.4, 0.9];
+pub const TRUTH: [f64; 4] = [1.1, 0.15, 4.4, 0.9];
 
 #[test]
 fn what_cannot_be_told_apart_is_said() {

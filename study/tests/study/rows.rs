@@ -133,9 +133,9 @@ hertzian::oscillator! {
     }
 }
 
-/// Where a level is touched at which the force jumps.
+/// Where a level is touched at which the force jumps, on the side that does not touch it: `(1 - w^2)^2 + (0.1 w)^2 = (0.3 / play)^2`.
 #[test]
-fn events_without_sensitivities_say_why() {
+fn touches_where_a_force_jumps_have_sensitivities() {
     let variants = Variants::grid().over("play", Spread::list(&[1.0]));
     let request = Request::response(0.5, 0.9).by(Method::Shooting);
     let study = Study::of(&Preloaded::default()).variants(variants);
@@ -148,11 +148,13 @@ fn events_without_sensitivities_say_why() {
     let rows = study.rows(0);
     assert!(!rows.is_empty());
     for row in &rows {
-        let why = text(&study, row, "without");
-        assert!(why.contains("the force jumps"), "{why}");
-        for name in ["by_play", "error_by_play"] {
-            assert_eq!(row[place(&study, name)], Value::Missing);
-        }
+        let omega = number(&study, row, "value");
+        let w = omega * omega;
+        let expected = 0.18 / (2.0 * omega * (2.0 * (1.0 - w) - 0.01));
+        let found = number(&study, row, "by_play");
+        assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+        assert!(number(&study, row, "error_by_play") < 1e-6);
+        assert_eq!(row[place(&study, "without")], Value::Missing);
     }
     let refused = Study::of(&OneSided::default())
         .variants(Variants::grid().over("drive", Spread::list(&[0.1])))

@@ -64,6 +64,41 @@ fn of_a_linear_oscillator_are_those_of_the_formula() {
     assert!(hertzian::Branch::read(&json).is_ok());
 }
 
+/// The impulse of a contact that carries a load is `2 pi W / omega`. A number of impacts has no derivative, and takes nothing else away.
+#[test]
+fn what_has_no_derivative_takes_nothing_else_away() {
+    let folder = Folder::new("impulses");
+    let table = folder.file("slopes.csv");
+    let asked = [
+        "--plot",
+        "contact:impulse,contact:impacts",
+        "--sensitivities",
+        &table,
+    ];
+    coarse(&folder, &asked).expect("a branch");
+    let rows = rows(&table);
+    let mut compared = 0;
+    for row in rows
+        .iter()
+        .filter(|row| row["at"] == "orbit" && row["by"] == "load")
+    {
+        let numbers = ["value", "derivative", "error"];
+        let [omega, found, error] = numbers.map(|of| row[of].parse::<f64>().unwrap());
+        let expected = std::f64::consts::TAU / omega;
+        // Next to a fold it is what the equations leave of it, and stated.
+        let apart = (found - expected).abs();
+        assert!(
+            apart <= error.max(1e-8) && error < 1e-3,
+            "{row:?} {expected}"
+        );
+        compared += 1;
+    }
+    assert!(compared > 10);
+    let said = rows.iter().filter(|row| row["what"] == "contact:impacts");
+    assert!(said.clone().count() >= compared);
+    said.for_each(|row| assert!(row["note"].contains("whole"), "{row:?}"));
+}
+
 #[test]
 fn of_folds_are_in_the_table_the_summary_and_a_picture() {
     let folder = Folder::new("tornado");

@@ -5,6 +5,8 @@ mod events;
 mod folds;
 mod grazing;
 mod points;
+mod switches;
+mod units;
 
 use hertzian::{Branch, Derivative, FrequencyResponse, Orbit, Shooting, System};
 

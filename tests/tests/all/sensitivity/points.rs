@@ -8,7 +8,7 @@ use hertzian_tests::{OneSided, TwoMasses};
 use super::{Make, assert_near, names, richardson, shot, unloaded};
 
 /// Everything that is read off the orbits at a frequency, against differences by the frequency and all parameters.
-fn compare(name: &str, values: &[f64], omega: f64, range: [f64; 2], make: &Make) {
+pub(super) fn compare(name: &str, values: &[f64], omega: f64, range: [f64; 2], make: &Make) {
     let model = make(values);
     let branch = FrequencyResponse::of(model.as_ref()).stability(false);
     let branch = branch.from(range[0]).to(range[1]).run().unwrap();
@@ -233,5 +233,66 @@ fn harmonics_that_vanish_are_said_to() {
             !is_there,
             "{name}"
         );
+    }
+}
+
+/// The largest and the smallest value of a symmetric motion are of one size. A load makes one of them larger, whatever its sign: the crest factor
+/// has a kink. What keeps the symmetry moves both alike.
+#[test]
+fn a_crest_factor_has_a_kink_where_a_motion_is_symmetric() {
+    hertzian::oscillator! {
+        Play(x) {
+            param zeta in 0.0..;
+            param load;
+            param drive;
+            law play(gap) { gap > 0.2 => gap - 0.2, -0.2 <= gap <= 0.2 => 0, gap < -0.2 => gap + 0.2 }
+            ddot(x) + 2*zeta*dot(x) + 0.3*x + play(x) = drive*cos(omega*t) + load;
+        }
+    }
+    let at = |load: f64, omega: f64| {
+        let model = Play {
+            zeta: 0.05,
+            load,
+            drive: 0.6,
+        };
+        let request = FrequencyResponse::of(&model).stability(false);
+        let branch = request.from(0.85).to(0.95).run().unwrap();
+        let orbit = &branch.at(omega).unwrap()[0];
+        let wanted = ["x:crest".parse().unwrap()];
+        branch.sensitivities_of(orbit, &wanted).unwrap()
+    };
+    let [left, here, right] = [-1e-6, 0.0, 1e-6].map(|load| at(load, 0.9));
+    let slope = |of: &Sensitivities| of.of("x:crest", "load").unwrap().value;
+    assert!(slope(&left) < -0.5 && slope(&right) > 0.5);
+    assert!(slope(&here).is_nan());
+    let missing: Vec<&str> = here.missing.iter().map(|own| own.what.as_str()).collect();
+    assert_eq!(missing, ["x:crest by load"]);
+    let by_drive = |of: &Sensitivities| of.of("x:crest", "drive").unwrap().value;
+    let [here, right] = [&here, &right].map(by_drive);
+    assert!((here - right).abs() < 1e-3 * right.abs(), "{here} {right}");
+}
+
+/// At rest any drive makes the largest value larger and the smallest one smaller: extremes have no derivatives by it. The mean has those of a spring under
+/// a load, `1 / k`.
+#[test]
+fn at_rest_extremes_have_no_derivatives() {
+    hertzian::oscillator! {
+        Rests(x) {
+            param load;
+            param drive;
+            ddot(x) + 0.1*dot(x) + 4*x = drive*cos(omega*t) + load;
+        }
+    }
+    for load in [0.0, 0.3] {
+        let model = Rests { load, drive: 0.0 };
+        let request = FrequencyResponse::of(&model).stability(false);
+        let branch = request.from(0.5).to(0.6).run().unwrap();
+        let at = branch.sensitivities(&branch.points[0]).unwrap();
+        for name in ["x:p2p", "x:max", "x:min", "x:crest", "x:h1"] {
+            assert_eq!(at.of(name, "drive"), None, "{name}");
+            assert!(at.missing.iter().any(|own| own.what == name), "{name}");
+        }
+        let mean = at.of("x:mean", "load").unwrap();
+        assert!((mean.value - 0.25).abs() < 1e-12, "{mean:?}");
     }
 }
