@@ -184,13 +184,11 @@ fn weighed(problem: &mut Problem, mut outcome: Outcome, trials: &mut Trials<'_>)
         if trials.is_stopped || !problem.weigh(&trial.first, &trial.residuals) {
             break;
         }
-        match trials.at(problem, &trial.unknowns, How::Exact) {
-            Ok(start) => outcome = refined(problem, start, trials),
-            Err(_) => {
-                outcome.converged = false;
-                break;
-            }
-        }
+        let Ok(start) = trials.at(problem, &trial.unknowns, How::Exact) else {
+            outcome.converged = false;
+            break;
+        };
+        outcome = refined(problem, start, trials);
     }
     outcome
 }

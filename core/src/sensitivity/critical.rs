@@ -110,7 +110,7 @@ fn solved(
     let mut all = DVector::zeros(n + 1);
     all.rows_mut(0, n).copy_from(&cycle.in_units(right));
     let found = matrix.lu().solve(&all).ok_or(singular)?;
-    Ok(cycle.from_units(&found.rows(0, n).into_owned()))
+    Ok(cycle.out_of_units(&found.rows(0, n).into_owned()))
 }
 
 /// An orbit with the multiplier that crosses.
@@ -313,7 +313,7 @@ pub(super) fn bends(
         directions.push(along);
     }
     let mut last = still;
-    last.states = cycle.from_units(&null.1);
+    last.states = cycle.out_of_units(&null.1);
     let matrices = cycle.matrices(&evaluated);
     let centre = Centre::known(cycle, &fold.states, variables, &evaluated, crossed);
     let bend = multiplier.bend(cycle, &centre, &matrices)?;

@@ -382,7 +382,7 @@ impl Cycle {
     }
 
     /// States that are in these units.
-    pub(super) fn from_units(&self, states: &DVector<f64>) -> DVector<f64> {
+    pub(super) fn out_of_units(&self, states: &DVector<f64>) -> DVector<f64> {
         DVector::from_fn(states.len(), |i, _| states[i] * self.unit(i))
     }
 

@@ -17,6 +17,9 @@ use super::slopes::{Direction, Instant};
 /// Places of contacts that switch at once move alike if they differ by no more than this part: flows leave less.
 const ALIKE: f64 = 1e-6;
 
+/// What is shown a switch by its number, and the signals before and after it.
+type See<'s> = &'s mut dyn FnMut(usize, &[f64], &[f64]);
+
 /// A place where gaps switch, at the end of an arc.
 pub(super) struct Landing {
     /// The arc that ends.
@@ -115,12 +118,7 @@ impl Reader<'_> {
     }
 
     /// The signals before and after each switch of a landing, in an order.
-    fn cross(
-        &self,
-        landing: &Landing,
-        order: impl Iterator<Item = usize>,
-        see: &mut dyn FnMut(usize, &[f64], &[f64]),
-    ) {
+    fn cross(&self, landing: &Landing, order: impl Iterator<Item = usize>, see: See<'_>) {
         let scan = &self.places.scan;
         let mut pieces = scan.arcs[landing.arc].pieces.clone();
         let next = &scan.arcs[landing.arc + 1].pieces;

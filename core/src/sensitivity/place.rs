@@ -105,7 +105,7 @@ pub(super) fn fold(
     let evaluated = cycle.evaluate(states, &[cycle.varied], &[])?;
     // Beside a fold the null vector is next to the tangent, and never across it.
     let null = null_vectors(&cycle.scaled(&evaluated.jacobian))?.1;
-    let null = cycle.from_units(&null);
+    let null = cycle.out_of_units(&null);
     let border = DVector::from_iterator(n + 1, null.iter().copied().chain([0.0]));
     let tangent = cycle.tangent(&evaluated, Some(&border))?;
     let scale = cycle.size(states).max(f64::MIN_POSITIVE) / cycle.size(&tangent.as_slice()[..n]);
