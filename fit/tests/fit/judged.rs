@@ -174,7 +174,9 @@ fn outliers_do_not_hide_each_other_from_a_robust_loss() {
     let omegas: Vec<f64> = (0..40).map(|i| 1.2 + 0.04 * f64::from(i)).collect();
     let wrong = [4, 11, 17, 22, 30, 36];
     let mut values = with_noise(&omegas, 0.005, 9);
-    wrong.iter().for_each(|&index| values[index] *= 1.4);
+    for index in wrong {
+        values[index] *= 1.4;
+    }
     let set = DataSet::new("x:p2p", omegas, values);
     let fit = Fit::of(&MODEL).data(set).free("c").free("k");
     let fitted = fit.loss(Loss::Huber(1.5)).run().expect("a fit");
