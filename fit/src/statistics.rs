@@ -361,3 +361,59 @@ pub(crate) fn correlation(covariance: &DMatrix<f64>) -> DMatrix<f64> {
         covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::DataSet;
+    use crate::fit::Fit;
+    use crate::trial::How;
+
+    hertzian::oscillator! {
+        Sprung(x) {
+            param c in 0.0..;
+            param k > 0;
+            ddot(x) + c*dot(x) + k*x = cos(omega*t);
+        }
+    }
+
+    fn problem(omegas: &[f64], values: &[f64]) -> Problem {
+        let set = DataSet::new("x:p2p", omegas, values);
+        let fit = Fit::of(&Sprung { c: 0.2, k: 4.0 }).data(set);
+        Problem::new(&fit.free("c").free("k")).expect("a problem")
+    }
+
+    fn linear(problem: &Problem, change: impl Fn(&mut Jacobian)) -> Linear {
+        let trial = Trial::below(problem, &[0.2, 4.0], How::Exact, f64::INFINITY);
+        let mut trial = trial.expect("a trial");
+        let mut jacobian = trial.jacobian(problem).expect("derivatives");
+        change(&mut jacobian);
+        Linear::of(problem, &trial, &Ok(jacobian))
+    }
+
+    /// A residual without derivatives is left out, as if it had not been measured, and said; without any at all nothing is said of unknowns.
+    #[test]
+    fn what_has_no_derivatives_is_left_out_and_said() {
+        let omegas = [1.5, 1.7, 1.9, 2.1, 2.3, 2.5];
+        let values = [1.1, 1.7, 3.6, 3.4, 1.5, 0.85];
+        let all = problem(&omegas, &values);
+        let found = linear(&all, |jacobian| {
+            jacobian.matrix.row_mut(0).fill(0.0);
+            jacobian
+                .without
+                .push((0, "values of x:p2p: why".to_owned()));
+        });
+        let expected = linear(&problem(&omegas[1..], &values[1..]), |_| {});
+        assert_eq!((found.count, found.degrees), (5, 3));
+        let apart = (&found.covariance - &expected.covariance).norm();
+        assert!(apart < 1e-6 * expected.covariance.norm(), "{apart:e}");
+        let said = found.in_words(&all);
+        let what = "estimates do not follow what has no derivatives: values of x:p2p: why";
+        assert_eq!(said, [what]);
+        let trial = Trial::below(&all, &[0.2, 4.0], How::Exact, f64::INFINITY);
+        let none = Linear::of(&all, &trial.expect("a trial"), &Err("why".to_owned()));
+        assert!(none.covariance.iter().all(|x| x.is_nan()));
+        let said = none.in_words(&all);
+        assert_eq!(said, ["no standard errors, for want of derivatives: why"]);
+    }
+}
