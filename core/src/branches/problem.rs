@@ -163,6 +163,11 @@ pub(crate) trait BranchProblem {
     /// Value of a test function, unknown where the orbit cannot be looked at.
     fn test(&mut self, index: usize, at: &CurvePoint) -> TestValue;
 
+    /// Component of the unit tangent along the parameter, in units of its scale, between points of a branch.
+    fn slope(&mut self, at: &CurvePoint) -> f64 {
+        at.parameter_slope()
+    }
+
     /// Logarithms of the complex multipliers with a positive imaginary part, where moduli are watched.
     fn pairs(&mut self, at: &CurvePoint) -> Option<Vec<Complex<f64>>> {
         let _ = at;

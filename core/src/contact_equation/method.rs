@@ -146,11 +146,15 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
     fn tests(&mut self, at: &CurvePoint) -> &Tests {
         let known = self.tested.take().filter(|(u, _)| *u == at.u);
         let found = known.unwrap_or_else(|| {
-            let map = self.run.map(at);
-            let tests = match &self.last {
-                // The last orbit has other equations, in which it was looked at.
-                Some(last) if map.is_none() && last.value == at.parameter() => last.tests(),
-                _ => Tests::of(map.as_ref(), divisor(at)),
+            let own = self.run.equations.map(&at.u);
+            let last = self.last.as_ref();
+            let tests = match last.filter(|last| last.value == at.parameter()) {
+                // The last orbit may have other equations, in which it was looked at.
+                Some(last) if own.is_none() => last.tests(),
+                _ => {
+                    let map = own.or_else(|| self.run.ordered_map(at));
+                    Tests::of(map.as_ref(), divisor(at))
+                }
             };
             (at.u.clone(), tests)
         });
@@ -190,9 +194,23 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         self.next.is_some()
     }
 
+    /// Whether the equations that were prepared have a place for the last orbit that was kept, where the present ones have one.
+    fn holds_last(&mut self) -> bool {
+        let last = self.run.equations.known[0].clone();
+        let known = last.len() == self.run.equations.skeleton.unknowns() + 1;
+        let Some(next) = self.next.as_ref().filter(|_| known) else {
+            return true;
+        };
+        let placed = self.run.transferred(&last, &next.equations, &next.u);
+        placed.is_some()
+    }
+
     /// The resolution that the last error asks for.
     fn wanted(&self, point: &Point) -> usize {
         let now = self.run.resolution;
+        if self.run.equations.skeleton.forces == 0 {
+            return now;
+        }
         let sizes = point.stability.multipliers.iter().map(|m| m.norm());
         let largest = sizes.fold(1.0, f64::max);
         let asked = self.run.problem.asked.stability;
@@ -261,6 +279,10 @@ impl BranchProblem for ContactBranch<'_, '_> {
 
     fn test(&mut self, index: usize, at: &CurvePoint) -> TestValue {
         TestValue::plain(self.tests(at).value(tested::Test::watched(index)))
+    }
+
+    fn slope(&mut self, at: &CurvePoint) -> f64 {
+        self.run.slope(at)
     }
 
     fn pairs(&mut self, at: &CurvePoint) -> Option<Vec<Complex<f64>>> {
@@ -346,6 +368,13 @@ impl BranchProblem for ContactBranch<'_, '_> {
         }
         if !again || !self.prepare(&at.u, self.run.resolution) {
             return Read::Lost;
+        }
+        // What happened in the step is looked for between points that both have a place in the equations.
+        if self.shortened < SHORTENED && !self.holds_last() {
+            self.next = None;
+            self.shortened += 1;
+            self.refused = 0;
+            return Read::TooFar;
         }
         self.refused += 1;
         Read::Refused

@@ -2,7 +2,7 @@
 //!
 //! Equations are exact while their switches are in the order that they are told in. Where that changes within a step, those of either end are
 //! right to first order beyond the change alone: test functions there, and events, are those of equations that are told in the order of the
-//! orbit itself, which is solved for again with them: at the same value, or across the tangent where the branch turns and no value tells one.
+//! orbit itself, which is solved for again with them.
 
 use nalgebra::DMatrix;
 
@@ -11,12 +11,10 @@ use super::events;
 use super::run::Run;
 use crate::branches::point::Event;
 use crate::branches::problem::Zero;
-use crate::branches::solve;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::event::EventKind;
 use crate::numeric::linear::dot;
-use crate::shooting::tested::Test;
 
 /// What the order changes is small.
 const OPTIONS: NewtonOptions = NewtonOptions {
@@ -25,37 +23,45 @@ const OPTIONS: NewtonOptions = NewtonOptions {
     damped: false,
 };
 
-/// How an orbit is solved for with other equations. Says whether it was.
-type Solve = fn(&mut Equations, &mut CurvePoint) -> bool;
+/// The slope of a branch along what is varied where a fold may be near.
+const NEAR_FOLD: f64 = 0.1;
 
-fn at_value(equations: &mut Equations, point: &mut CurvePoint) -> bool {
-    let mut newton = Newton::new(equations);
-    solve::at_value(equations, &mut newton, &mut point.u, OPTIONS).is_ok()
-}
-
-/// In the plane across its tangent.
-fn across(equations: &mut Equations, point: &mut CurvePoint) -> bool {
+/// Solves for an orbit, and its tangent: at its value, or near a fold, where no value tells one, in the plane across its tangent. Says whether
+/// it was found.
+fn solve(equations: &mut Equations, point: &mut CurvePoint) -> bool {
     let mut newton = Newton::new(equations);
     let mut row = vec![0.0; point.u.len()];
-    newton
-        .norm()
-        .linear_form(point.scale, &point.tangent, &mut row);
+    if point.parameter_slope().abs() < NEAR_FOLD {
+        let norm = newton.norm();
+        norm.linear_form(point.scale, &point.tangent, &mut row);
+    } else {
+        row[point.u.len() - 1] = 1.0 / point.scale.parameter;
+    }
     let border = Border {
         row: &row,
         value: dot(&row, &point.u),
     };
     let corrected = newton.correct(equations, &mut point.u, border, point.scale, OPTIONS);
-    corrected.is_ok()
+    let mut tangent = vec![0.0; point.u.len()];
+    if corrected.is_err() || !newton.tangent(equations, &point.u, &mut tangent, true) {
+        return false;
+    }
+    let norm = newton.norm();
+    let along = norm.product(point.scale, &tangent, &point.tangent);
+    let length = norm.length(point.scale, &tangent).copysign(along);
+    let taken = tangent.iter().map(|t| t / length);
+    point
+        .tangent
+        .iter_mut()
+        .zip(taken)
+        .for_each(|(t, taken)| *t = taken);
+    true
 }
 
 impl Run<'_> {
     /// Equations with the switches of an orbit in their order, and the orbit by them. Nothing where the present ones have them so, or where
     /// none are found.
     pub(super) fn ordered(&mut self, at: &CurvePoint) -> Option<(Equations, CurvePoint)> {
-        self.ordered_by(at, at_value)
-    }
-
-    fn ordered_by(&mut self, at: &CurvePoint, solve: Solve) -> Option<(Equations, CurvePoint)> {
         self.equations.compute(&at.u, false);
         if self.equations.failed || self.equations.is_in_order() {
             return None;
@@ -73,23 +79,30 @@ impl Run<'_> {
     /// The map over the period, by equations that have the switches in their order.
     pub(super) fn map(&mut self, at: &CurvePoint) -> Option<DMatrix<f64>> {
         let map = self.equations.map(&at.u);
-        map.or_else(|| {
-            let (mut equations, point) = self.ordered(at)?;
-            equations.map(&point.u)
-        })
+        map.or_else(|| self.ordered_map(at))
+    }
+
+    /// The same where the present ones have another order.
+    pub(super) fn ordered_map(&mut self, at: &CurvePoint) -> Option<DMatrix<f64>> {
+        let (mut equations, point) = self.ordered(at)?;
+        equations.map(&point.u)
+    }
+
+    /// The slope of what is varied, by equations that have the switches in their order.
+    pub(super) fn slope(&mut self, at: &CurvePoint) -> f64 {
+        let ordered = self.ordered(at);
+        ordered.map_or_else(
+            || at.parameter_slope(),
+            |(_, point)| point.parameter_slope(),
+        )
     }
 
     /// The event at a zero, by equations that have the switches in their order there. Crossings of branches, which lie in the direction of the
     /// step and its unknowns, are those of the present equations.
     pub(super) fn event(&mut self, step: Step<'_>, zero: &Zero, kind: EventKind) -> Option<Event> {
-        let of_value = Test::of(zero.change.test) == Test::Slope;
         let crosses = zero.change.kind == EventKind::BranchPoint;
         let at = &zero.root.located.point;
-        let ordered = match (crosses, of_value) {
-            (true, _) => None,
-            (false, true) => self.ordered_by(at, across),
-            (false, false) => self.ordered(at),
-        };
+        let ordered = if crosses { None } else { self.ordered(at) };
         let Some((equations, point)) = ordered else {
             return events::event(self, step, zero, kind);
         };

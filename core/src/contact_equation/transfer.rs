@@ -121,11 +121,30 @@ pub(super) fn replanned(motion: &Motion<'_>, u: &[f64], gaps: &Gaps<'_>) -> Plan
         return Plan::sampled(gaps, skeleton.recurrence());
     }
     let mut crossings = crossings(skeleton, u);
-    let extremes = motion.extremes().gaps.concat();
+    let mut extremes = motion.extremes().gaps.clone();
+    if !motion.equations.is_in_order() {
+        for of_gap in &mut extremes {
+            alternate(of_gap);
+        }
+    }
+    let extremes = extremes.concat();
     for extreme in &extremes {
         add_beyond(gaps, skeleton, extreme, &mut crossings);
     }
     Plan::of(gaps, skeleton.recurrence(), crossings, &extremes)
+}
+
+/// Leaves one of successive extremes of a gap that are both maxima, or both minima: the farther one. Where switches of different gaps have
+/// passed each other, intervals overlap, and both of two see one extreme.
+fn alternate(of_gap: &mut Vec<GapExtreme>) {
+    of_gap.sort_by(|a, b| a.phase.total_cmp(&b.phase));
+    of_gap.dedup_by(|next, kept| {
+        let same = next.maximum == kept.maximum;
+        if same && (next.gap > kept.gap) == kept.maximum {
+            *kept = *next;
+        }
+        same
+    });
 }
 
 /// Adds the switches around an extreme that is beyond the levels of its piece, where the parabola of the gap has them.
@@ -168,5 +187,31 @@ fn add_beyond(
                 phase,
             });
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_two_maxima_in_turn_the_higher_one_is_left() {
+        let extreme = |phase: f64, gap: f64, maximum: bool| GapExtreme {
+            contact: 0,
+            interval: 0,
+            phase,
+            gap,
+            maximum,
+        };
+        let mut seen = vec![
+            extreme(0.4, -0.2, true),
+            extreme(0.1, -0.7, false),
+            extreme(0.2, -0.1, true),
+            extreme(0.6, -0.3, false),
+            extreme(0.5, -0.4, false),
+        ];
+        alternate(&mut seen);
+        let phases: Vec<f64> = seen.iter().map(|extreme| extreme.phase).collect();
+        assert_eq!(phases, [0.1, 0.2, 0.5]);
     }
 }

@@ -126,12 +126,23 @@ impl Position {
         problem: &mut dyn Problem,
         newton: &mut Newton,
     ) -> Result<bool, Stop> {
+        let tried = self.stepper.step;
         let Some(next) = self.stepper.next(problem, newton, &self.point)? else {
             return Ok(false);
         };
-        let (next, ended) = self
+        let cut = self
             .stepper
-            .cut_at_range(problem, newton, &self.point, next)?;
+            .cut_at_range(problem, newton, &self.point, next);
+        let (next, ended) = match cut {
+            Ok(cut) => cut,
+            // A shorter step ends within the range, where its point is looked at before the end is tried again.
+            Err(reason) => {
+                newton.statistics.accepted_steps -= 1;
+                newton.statistics.rejected_steps += 1;
+                self.stepper.shorten(&self.point, tried, reason)?;
+                return Ok(false);
+            }
+        };
         self.previous = Some(std::mem::replace(&mut self.point, next));
         self.ended = ended;
         Ok(true)

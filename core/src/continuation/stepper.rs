@@ -152,6 +152,29 @@ impl Stepper {
         }
     }
 
+    /// A tangent that turns however short the step is may be one of the last matrix alone, which was taken of unknowns before the solution: those
+    /// at which another gap is closed, if a level is touched in between. It is taken of the solution.
+    fn retake_tangent(
+        &mut self,
+        problem: &mut dyn Problem,
+        newton: &mut Newton,
+        point: &mut CurvePoint,
+    ) {
+        let mut tangent = vec![0.0; point.u.len()];
+        if !newton.tangent(problem, &point.u, &mut tangent, true) {
+            return;
+        }
+        let norm = newton.norm().length(point.scale, &tangent);
+        if norm.is_finite() && norm > 0.0 {
+            let taken = tangent.iter().map(|t| t / norm);
+            point
+                .tangent
+                .iter_mut()
+                .zip(taken)
+                .for_each(|(t, taken)| *t = taken);
+        }
+    }
+
     /// Rounding must not look like a turn of the curve.
     fn scale_at_trial(&mut self, newton: &Newton) -> Scale {
         let norm = newton.norm();
@@ -184,6 +207,10 @@ impl Stepper {
                     || passes_folds(norm, from, &point, self.options.newton.tolerance);
                 let shorter = steps.after_doubt(self.step).filter(|_| looks_wrong);
                 let Some(shorter) = shorter else {
+                    let mut point = point;
+                    if steps.turns_too_far(angle) {
+                        self.retake_tangent(problem, newton, &mut point);
+                    }
                     newton.statistics.accepted_steps += 1;
                     self.remember(from, angle);
                     let slope = point.parameter_slope();
@@ -193,20 +220,43 @@ impl Stepper {
                 newton.statistics.rejected_steps += 1;
                 shorter
             }
-            Err(NewtonError::Cancelled { .. }) => return Err(Stop::Interrupted),
             Err(reason) => {
                 newton.statistics.rejected_steps += 1;
-                steps.after_failure(self.step).ok_or(Stop::StepTooShort {
-                    step: self.step,
-                    value: from.parameter(),
-                    reason,
-                })?
+                self.shorten(from, self.step, reason)?;
+                return Ok(None);
             }
         };
-        // The parabola may have led astray.
-        self.before = None;
-        self.step = shorter;
+        self.tried_again(shorter);
         Ok(None)
+    }
+
+    /// After a step of a length has failed.
+    ///
+    /// # Errors
+    /// If it cannot be shorter, or the work was cancelled.
+    pub(super) fn shorten(
+        &mut self,
+        from: &CurvePoint,
+        step: f64,
+        reason: NewtonError,
+    ) -> Result<(), Stop> {
+        if matches!(reason, NewtonError::Cancelled { .. }) {
+            return Err(Stop::Interrupted);
+        }
+        let shorter = self.options.steps.after_failure(step);
+        let shorter = shorter.ok_or(Stop::StepTooShort {
+            step,
+            value: from.parameter(),
+            reason,
+        })?;
+        self.tried_again(shorter);
+        Ok(())
+    }
+
+    /// The next step has this length. The parabola may have led astray.
+    fn tried_again(&mut self, step: f64) {
+        self.before = None;
+        self.step = step;
     }
 
     /// The parabola through the point before, and this one with its tangent: at arc length `-h` before,
@@ -274,13 +324,16 @@ impl Stepper {
     }
 
     /// If the step went beyond an end of the range, replaces its point by the one at the end.
+    ///
+    /// # Errors
+    /// If there is none near by: the step was too long.
     pub(super) fn cut_at_range(
         &mut self,
         problem: &mut dyn Problem,
         newton: &mut Newton,
         from: &CurvePoint,
         next: CurvePoint,
-    ) -> Result<(CurvePoint, Option<Stop>), Stop> {
+    ) -> Result<(CurvePoint, Option<Stop>), NewtonError> {
         let FollowOptions {
             from: start,
             to: end,
@@ -310,15 +363,7 @@ impl Stepper {
         }
         self.scale = from.scale;
         // A point beyond the range is never kept: the equations need not make sense there.
-        self.solve_at(problem, newton, limit)
-            .map_err(|reason| match reason {
-                NewtonError::Cancelled { .. } => Stop::Interrupted,
-                reason => Stop::StepTooShort {
-                    step: self.step,
-                    value: from.parameter(),
-                    reason,
-                },
-            })?;
+        self.solve_at(problem, newton, limit)?;
         let mut point = self.point(problem, newton);
         if newton
             .norm()

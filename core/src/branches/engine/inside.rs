@@ -125,7 +125,7 @@ impl Engine {
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
-        parts: &[Seen; 3],
+        parts: &[Seen],
         after: usize,
     ) {
         let known = self.divided.clone();
@@ -140,6 +140,23 @@ impl Engine {
             }
         }
         self.note_divided(problem, parts, after);
+    }
+
+    /// Records what orbits within a step show, and others between these, and its ends do not.
+    pub(super) fn record_between(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        [a, b]: [Seen; 2],
+        inner: Vec<Seen>,
+        after: usize,
+    ) {
+        let mut parts = vec![a, b];
+        for seen in inner {
+            insert(newton, &mut parts, seen);
+        }
+        self.divide_parts(problem, newton, &mut parts);
+        self.record_pair(problem, newton, &parts, after);
     }
 
     /// An orbit inside one of two steps where a test function has the other sign than at all their ends.

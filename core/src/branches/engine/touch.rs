@@ -8,7 +8,10 @@ use super::Engine;
 use super::approach::{Approach, Reached, on_the_way};
 use super::explained::Bent;
 use super::inside_touch::Steps;
-use crate::branches::extreme::{Extreme, Passage, appears, crossings, distinct, is_copy, passed};
+use super::seen::Seen;
+use crate::branches::extreme::{
+    Bend, Extreme, Passage, appears, crossings, distinct, is_copy, passed,
+};
 use crate::branches::problem::{BranchProblem, Touch};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::inside;
@@ -41,6 +44,8 @@ struct TouchSearch<'s> {
     turned: Option<Turn>,
     /// Where touches were found.
     found: Vec<f64>,
+    /// The orbits there, of those that are no corners.
+    orbits: Vec<CurvePoint>,
     /// Those at which the branch or its multipliers bend.
     bent: Vec<Bent>,
 }
@@ -96,6 +101,8 @@ impl Engine {
                 search.found = touched;
                 search.between_all(problem, newton, &earlier);
                 self.bent.append(&mut search.bent);
+                let orbits = std::mem::take(&mut search.orbits);
+                self.beside_touches(problem, newton, orbits, 2);
             }
             parts = last;
         }
@@ -104,6 +111,40 @@ impl Engine {
         search.between_all(problem, newton, &parts);
         self.touched = search.found;
         self.bent.append(&mut search.bent);
+        self.beside_touches(problem, newton, search.orbits, 1);
+    }
+
+    /// Records what test functions show at touches, and at no end of the step between the points of these places from the last one on. Behind a
+    /// touch they change as a root or along another line: no parabola through three points tells that.
+    fn beside_touches(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        orbits: Vec<CurvePoint>,
+        place: usize,
+    ) {
+        let Some(before) = self.seen.len().checked_sub(place + 1) else {
+            return;
+        };
+        if orbits.is_empty() || problem.watched().is_empty() {
+            return;
+        }
+        let ends = [before, before + 1].map(|place| self.seen[place].clone());
+        let along = &ends[0].point;
+        let touches = orbits.into_iter().map(|mut orbit| {
+            // It was come to from either side.
+            if newton
+                .norm()
+                .product(along.scale, &orbit.tangent, &along.tangent)
+                < 0.0
+            {
+                orbit.tangent.iter_mut().for_each(|t| *t = -*t);
+            }
+            Seen::at(problem, &orbit, ends[0].falls)
+        });
+        let touches: Vec<Seen> = touches.collect();
+        let after = problem.points() - place;
+        self.record_between(problem, newton, ends, touches, after);
     }
 
     /// A search for the touches in a step behind so many points.
@@ -115,6 +156,7 @@ impl Engine {
             after,
             turned: None,
             found: Vec::new(),
+            orbits: Vec::new(),
             bent: Vec::new(),
         }
     }
@@ -285,6 +327,9 @@ impl TouchSearch<'_> {
             return true;
         }
         self.found.push(value);
+        if extreme.bend != Bend::Corner {
+            self.orbits.push(located.point.clone());
+        }
         let touch = Touch {
             located,
             extreme,

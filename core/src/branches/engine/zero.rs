@@ -206,7 +206,7 @@ impl<'s> Search<'s> {
     /// The test function, in the units of both ends.
     fn value(&self, problem: &mut dyn BranchProblem, at: &CurvePoint) -> f64 {
         match self.change.test {
-            Test::Slope => at.parameter_slope(),
+            Test::Slope => problem.slope(at),
             Test::Watched(index) => problem.test(index, at).relative_to(self.reference()),
         }
     }

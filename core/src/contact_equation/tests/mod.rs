@@ -6,6 +6,7 @@ mod jumps;
 mod moving_stiffness;
 mod order;
 mod regular;
+mod several;
 
 use nalgebra::DMatrix;
 

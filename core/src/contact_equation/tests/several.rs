@@ -1,0 +1,125 @@
+//! Branches of several masses with several stops, whose switches pass each other beside touches and folds: every event is that of shooting,
+//! in both directions, and nothing is left that could not be located.
+
+use super::events_agree;
+use crate::FrequencyResponse;
+use crate::system::System;
+
+crate::oscillator! {
+    /// Two masses between stops on both sides.
+    Both(x, y) {
+        param k;
+        param c;
+        param s;
+        param g;
+        param drive;
+        param ky;
+        law stop(gap) { gap > 0 => k*gap^1.5 + c*gap*dot(gap), else => 0 }
+        ddot(x) + 0.1*dot(x) + 0.5*x + s*(x - y) + stop(x - g) - stop(-x - g) = drive*cos(omega*t);
+        ddot(y) + 0.1*dot(y) + ky*y - s*(x - y) + stop(y - g) - stop(-y - g) = 0;
+    }
+}
+
+crate::oscillator! {
+    /// Three masses in a row, the last one with a stop on the other side.
+    Row(x, y, z) {
+        param k;
+        param c;
+        param s;
+        param g;
+        param drive;
+        param ky;
+        law stop(gap) { gap > 0 => k*gap + c*gap*dot(gap), else => 0 }
+        ddot(x) + 0.1*dot(x) + 0.5*x + s*(x - y) + stop(x - g) = drive*cos(omega*t);
+        ddot(y) + 0.1*dot(y) + ky*y - s*(x - y) + s*(y - z) + stop(y - g) = 0;
+        ddot(z) + 0.1*dot(z) + ky*z - s*(y - z) - stop(-z - g) = 0;
+    }
+}
+
+fn row([k, c, s, g, drive, ky]: [f64; 6]) -> Row {
+    Row {
+        k,
+        c,
+        s,
+        g,
+        drive,
+        ky,
+    }
+}
+
+fn agree(system: &dyn System, range: [f64; 2]) {
+    let [from, to] = range;
+    events_agree(&FrequencyResponse::of(system).from(from).to(to));
+}
+
+/// Two intervals that overlap while their switches are out of order see one extreme each: it is watched once.
+#[test]
+fn an_extreme_that_is_seen_twice_is_watched_once() {
+    let model = row([
+        9.061_52,
+        0.376_961,
+        1.157_93,
+        0.074_786_3,
+        0.256_091,
+        0.627_31,
+    ]);
+    agree(&model, [0.443_59, 0.743_854]);
+    let model = row([
+        4.873_13,
+        0.075_801_6,
+        0.839_04,
+        0.158_805,
+        0.475_267,
+        1.055_59,
+    ]);
+    agree(&model, [0.464_01, 1.176]);
+}
+
+/// The last step goes beyond the end of the range, where there is no orbit by its equations: a shorter one leads to other equations before.
+#[test]
+fn the_end_of_a_range_beside_a_change_of_order_is_reached() {
+    let model = row([
+        9.036_05, 0.446_498, 0.493_015, 0.209_095, 0.419_875, 1.393_07,
+    ]);
+    agree(&model, [0.532_392, 1.049_79]);
+}
+
+/// A pair of multipliers leaves the circle before a touch and comes back behind it, within one step.
+#[test]
+fn tori_on_both_sides_of_a_touch_are_found() {
+    let model = row([
+        11.396_3, 0.321_847, 1.356_08, 0.353_897, 0.416_173, 1.037_33,
+    ]);
+    for range in [[0.435_359, 1.061_12], [1.061_12, 0.435_359]] {
+        agree(&model, range);
+    }
+}
+
+/// Between a change of order and a point a branch turns: slope and multipliers there are those of equations in the order of the orbits.
+#[test]
+fn folds_and_tori_beside_a_change_of_order_are_found() {
+    let model = row([7.637_8, 0.445_477, 1.561_78, 0.312_49, 0.447_371, 0.732_671]);
+    agree(&model, [0.658_621, 0.982_975]);
+    let model = row([16.791, 0.437_089, 1.928_22, 0.136_941, 0.164_169, 0.634_741]);
+    agree(&model, [1.583_3, 0.795_33]);
+    let model = row([
+        10.190_1, 0.390_334, 0.792_689, 0.166_426, 0.745_11, 1.139_19,
+    ]);
+    agree(&model, [0.888_475, 1.440_59]);
+}
+
+/// A step to an orbit whose equations have no place for the one before is made again, shorter: what happens in it is looked for between both.
+#[test]
+fn a_step_over_several_changes_is_divided() {
+    let (k, c, s) = (3.991_19, 0.421_121, 0.850_548);
+    let (g, drive, ky) = (0.055_013_6, 0.294_618, 1.246_52);
+    let model = Both {
+        k,
+        c,
+        s,
+        g,
+        drive,
+        ky,
+    };
+    agree(&model, [1.044_78, 0.527_498]);
+}
