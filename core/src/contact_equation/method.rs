@@ -35,6 +35,8 @@ pub(super) const REFUSALS: usize = 8;
 /// A step is made again shorter so often at most, where it leaps over a touch of a level where the force jumps, over a touch and a change of
 /// the order of switches, or to where no equations are found.
 pub(super) const SHORTENED: usize = 8;
+/// The same where the orbit before it has no place in the equations of the point: what disappears between both may do so in any step.
+const DISPLACED: usize = 3;
 /// Multipliers that may be wrong by more are not compared with one.
 const COARSE: f64 = 1e-3;
 /// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
@@ -65,6 +67,10 @@ pub(super) struct ContactBranch<'b, 'r> {
     pub(super) refused: usize,
     /// How often the step to it was made again, shorter.
     pub(super) shortened: usize,
+    /// The same, since the last orbit that was kept had no place in its equations.
+    displaced: usize,
+    /// The last orbit that was kept, in the present unknowns.
+    kept: Option<Vec<f64>>,
     /// Points that are followed before fewer nodes are tried.
     pub(super) held: usize,
     visit: See<'b>,
@@ -139,6 +145,8 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             stuck: false,
             refused: 0,
             shortened: 0,
+            displaced: 0,
+            kept: None,
             visit,
         }
     }
@@ -148,12 +156,18 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let found = known.unwrap_or_else(|| {
             let own = self.run.equations.map(&at.u);
             let last = self.last.as_ref();
-            let tests = match last.filter(|last| last.value == at.parameter()) {
+            let known = |last: &&Last| last.value == at.parameter() && !last.map.is_empty();
+            let tests = match (own, last.filter(known)) {
+                (Some(own), _) => Tests::of(Some(&own), divisor(at)),
                 // The last orbit may have other equations, in which it was looked at.
-                Some(last) if own.is_none() => last.tests(),
-                _ => {
-                    let map = own.or_else(|| self.run.ordered_map(at));
-                    Tests::of(map.as_ref(), divisor(at))
+                (None, Some(last)) => last.tests(),
+                (None, None) => {
+                    let ordered = self.run.ordered(at);
+                    let ordered = ordered.map(|(mut equations, at)| {
+                        let map = equations.map(&at.u);
+                        Tests::of(map.as_ref(), divisor(&at))
+                    });
+                    ordered.unwrap_or_else(|| Tests::of(None, divisor(at)))
                 }
             };
             (at.u.clone(), tests)
@@ -196,21 +210,16 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
 
     /// Whether the equations that were prepared have a place for the last orbit that was kept, where the present ones have one.
     fn holds_last(&mut self) -> bool {
-        let last = self.run.equations.known[0].clone();
-        let known = last.len() == self.run.equations.skeleton.unknowns() + 1;
-        let Some(next) = self.next.as_ref().filter(|_| known) else {
+        let (Some(kept), Some(next)) = (&self.kept, &self.next) else {
             return true;
         };
-        let placed = self.run.transferred(&last, &next.equations, &next.u);
+        let placed = self.run.transferred(kept, &next.equations, &next.u);
         placed.is_some()
     }
 
     /// The resolution that the last error asks for.
     fn wanted(&self, point: &Point) -> usize {
         let now = self.run.resolution;
-        if self.run.equations.skeleton.forces == 0 {
-            return now;
-        }
         let sizes = point.stability.multipliers.iter().map(|m| m.norm());
         let largest = sizes.fold(1.0, f64::max);
         let asked = self.run.problem.asked.stability;
@@ -218,7 +227,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let errors = [point.error.unwrap_or(0.0), spread / (MULTIPLIERS * largest)];
         let error = errors.map(|error| error / self.run.problem.tolerance);
         let error = error[0].max(error[1]);
-        if error > 1.0 && now + 1 < RESOLUTIONS.len() {
+        // More nodes are of no use where no force is unknown.
+        let has_nodes = self.run.equations.skeleton.forces > 0;
+        if error > 1.0 && has_nodes && now + 1 < RESOLUTIONS.len() {
             now + 1
         } else if error < PLENTY && now > FIRST && self.held == 0 {
             now - 1
@@ -238,6 +249,8 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         }
         self.refused = 0;
         self.shortened = 0;
+        self.displaced = 0;
+        self.kept = Some(at.u.clone());
         self.held = self.held.saturating_sub(1);
         self.run.equations.known[0].clone_from(&at.u);
         if !self.keep_point(at, read) {
@@ -370,9 +383,9 @@ impl BranchProblem for ContactBranch<'_, '_> {
             return Read::Lost;
         }
         // What happened in the step is looked for between points that both have a place in the equations.
-        if self.shortened < SHORTENED && !self.holds_last() {
+        if self.displaced < DISPLACED && !self.holds_last() {
             self.next = None;
-            self.shortened += 1;
+            self.displaced += 1;
             self.refused = 0;
             return Read::TooFar;
         }
@@ -478,6 +491,11 @@ impl BranchProblem for ContactBranch<'_, '_> {
         if let Some(previous) = &halted.previous {
             look_ahead(&mut halted.point, previous, &equations);
         }
+        self.kept = if self.refused > 0 {
+            halted.previous.as_ref().map(|previous| previous.u.clone())
+        } else {
+            Some(u.clone())
+        };
         // A curve is not closed where its first point has no place.
         halted.first = point(&halted.first).unwrap_or_else(|| nowhere(halted.first.scale));
         halted.before = None;
@@ -495,6 +513,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
             self.run.resolution = resolution;
             self.run.clear_finer();
             self.tested = None;
+            self.kept = None;
             self.stuck = true;
         }
     }

@@ -30,12 +30,18 @@ const NEAR_FOLD: f64 = 0.1;
 /// it was found.
 fn solve(equations: &mut Equations, point: &mut CurvePoint) -> bool {
     let mut newton = Newton::new(equations);
+    let last = point.u.len() - 1;
     let mut row = vec![0.0; point.u.len()];
-    if point.parameter_slope().abs() < NEAR_FOLD {
+    let near_fold = point.parameter_slope().abs() < NEAR_FOLD;
+    if near_fold {
+        // Where only the direction of what is varied is known, it tells no orbit.
+        if point.tangent[..last].iter().all(|t| *t == 0.0) {
+            return false;
+        }
         let norm = newton.norm();
         norm.linear_form(point.scale, &point.tangent, &mut row);
     } else {
-        row[point.u.len() - 1] = 1.0 / point.scale.parameter;
+        row[last] = 1.0 / point.scale.parameter;
     }
     let border = Border {
         row: &row,
@@ -47,7 +53,12 @@ fn solve(equations: &mut Equations, point: &mut CurvePoint) -> bool {
         return false;
     }
     let norm = newton.norm();
-    let along = norm.product(point.scale, &tangent, &point.tangent);
+    // Beside a touch a tangent in other unknowns is a difference across it, and may lead back; what is varied does not.
+    let along = if near_fold {
+        norm.product(point.scale, &tangent, &point.tangent)
+    } else {
+        tangent[last] * point.tangent[last]
+    };
     let length = norm.length(point.scale, &tangent).copysign(along);
     let taken = tangent.iter().map(|t| t / length);
     point
@@ -79,13 +90,10 @@ impl Run<'_> {
     /// The map over the period, by equations that have the switches in their order.
     pub(super) fn map(&mut self, at: &CurvePoint) -> Option<DMatrix<f64>> {
         let map = self.equations.map(&at.u);
-        map.or_else(|| self.ordered_map(at))
-    }
-
-    /// The same where the present ones have another order.
-    pub(super) fn ordered_map(&mut self, at: &CurvePoint) -> Option<DMatrix<f64>> {
-        let (mut equations, point) = self.ordered(at)?;
-        equations.map(&point.u)
+        map.or_else(|| {
+            let (mut equations, point) = self.ordered(at)?;
+            equations.map(&point.u)
+        })
     }
 
     /// The slope of what is varied, by equations that have the switches in their order.

@@ -209,9 +209,11 @@ mod tests {
             extreme(0.2, -0.1, true),
             extreme(0.6, -0.3, false),
             extreme(0.5, -0.4, false),
+            extreme(0.7, -0.6, true),
+            extreme(0.8, -0.5, true),
         ];
         alternate(&mut seen);
         let phases: Vec<f64> = seen.iter().map(|extreme| extreme.phase).collect();
-        assert_eq!(phases, [0.1, 0.2, 0.5]);
+        assert_eq!(phases, [0.1, 0.2, 0.5, 0.8]);
     }
 }

@@ -55,7 +55,11 @@ impl CurvePoint {
 
     /// The same, unless it is rounding, which is as large as `vanishing` where the parameter is as large as its scale.
     pub(crate) fn known_slope(&self, vanishing: f64) -> Option<f64> {
-        let slope = self.parameter_slope();
+        self.unless_rounding(self.parameter_slope(), vanishing)
+    }
+
+    /// A slope there, unless it is rounding.
+    pub(crate) fn unless_rounding(&self, slope: f64, vanishing: f64) -> Option<f64> {
         let rounding = (vanishing * self.narrowness()).min(ROUNDED);
         (slope.abs() > rounding).then_some(slope)
     }

@@ -8,6 +8,9 @@ use crate::continuation::newton::{Newton, NewtonError};
 /// Points before the curve may close upon itself.
 const CLOSES_AFTER: usize = 10;
 
+/// An end of the range that is not reached by a step as short as this is not reached by shorter ones.
+const NEAREST: f64 = 1e-5;
+
 /// An oscillation that has grown so many times, while the branch goes on upwards, has no bound: beside a resonance with less damping
 /// than `1 / GROWTH` rounding of the frequency is all that is left.
 const GROWTH: f64 = 1e10;
@@ -135,8 +138,17 @@ impl Position {
             .cut_at_range(problem, newton, &self.point, next);
         let (next, ended) = match cut {
             Ok(cut) => cut,
+            Err(NewtonError::Cancelled { .. }) => return Err(Stop::Interrupted),
             // A shorter step ends within the range, where its point is looked at before the end is tried again.
             Err(reason) => {
+                if tried < NEAREST {
+                    let (step, value) = (tried, self.point.parameter());
+                    return Err(Stop::StepTooShort {
+                        step,
+                        value,
+                        reason,
+                    });
+                }
                 newton.statistics.accepted_steps -= 1;
                 newton.statistics.rejected_steps += 1;
                 self.stepper.shorten(&self.point, tried, reason)?;

@@ -197,20 +197,18 @@ impl Stepper {
         self.set_curvature(newton, from);
         let steps = self.options.steps;
         let shorter = match self.corrected(problem, newton, from, self.step) {
-            Ok((point, distance)) => {
+            Ok((mut point, distance)) => {
+                let mut angle = angle_between(newton.norm(), from, &point);
+                if steps.turns_too_far(angle) && steps.after_doubt(self.step).is_none() {
+                    self.retake_tangent(problem, newton, &mut point);
+                    angle = angle_between(newton.norm(), from, &point);
+                }
                 let norm = newton.norm();
-                let cosine = norm.product(from.scale, &from.tangent, &point.tangent)
-                    / norm.length(from.scale, &point.tangent);
-                let angle = cosine.clamp(-1.0, 1.0).acos();
                 let looks_wrong = steps.turns_too_far(angle)
                     || steps.is_too_far(distance)
                     || passes_folds(norm, from, &point, self.options.newton.tolerance);
                 let shorter = steps.after_doubt(self.step).filter(|_| looks_wrong);
                 let Some(shorter) = shorter else {
-                    let mut point = point;
-                    if steps.turns_too_far(angle) {
-                        self.retake_tangent(problem, newton, &mut point);
-                    }
                     newton.statistics.accepted_steps += 1;
                     self.remember(from, angle);
                     let slope = point.parameter_slope();
@@ -220,6 +218,7 @@ impl Stepper {
                 newton.statistics.rejected_steps += 1;
                 shorter
             }
+            Err(NewtonError::Cancelled { .. }) => return Err(Stop::Interrupted),
             Err(reason) => {
                 newton.statistics.rejected_steps += 1;
                 self.shorten(from, self.step, reason)?;
@@ -233,16 +232,13 @@ impl Stepper {
     /// After a step of a length has failed.
     ///
     /// # Errors
-    /// If it cannot be shorter, or the work was cancelled.
+    /// If it cannot be shorter.
     pub(super) fn shorten(
         &mut self,
         from: &CurvePoint,
         step: f64,
         reason: NewtonError,
     ) -> Result<(), Stop> {
-        if matches!(reason, NewtonError::Cancelled { .. }) {
-            return Err(Stop::Interrupted);
-        }
         let shorter = self.options.steps.after_failure(step);
         let shorter = shorter.ok_or(Stop::StepTooShort {
             step,
@@ -400,6 +396,13 @@ impl Stepper {
             && step < 2.0 * self.options.steps.largest
             && norm.product(first.scale, &from.tangent, &first.tangent) > 0.9
     }
+}
+
+/// The angle between the tangents of two points.
+fn angle_between(norm: &Norm, from: &CurvePoint, to: &CurvePoint) -> f64 {
+    let along = norm.product(from.scale, &from.tangent, &to.tangent);
+    let cosine = along / norm.length(from.scale, &to.tangent);
+    cosine.clamp(-1.0, 1.0).acos()
 }
 
 /// Whether a step seems to have passed a pair of folds, or nearly: the parameter has the same direction at both ends, but the

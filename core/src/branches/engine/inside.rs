@@ -155,6 +155,9 @@ impl Engine {
         for seen in inner {
             insert(newton, &mut parts, seen);
         }
+        if !tests(problem).any(|test| is_hidden(problem, &parts, test)) {
+            return;
+        }
         self.divide_parts(problem, newton, &mut parts);
         self.record_pair(problem, newton, &parts, after);
     }
@@ -270,8 +273,8 @@ impl Engine {
         let step = step_between(pair);
         let options = self.options.newton;
         let wanted = problem.vanishing();
-        let turn = locate(problem, newton, step, options, wanted, |_, at| {
-            at.parameter_slope()
+        let turn = locate(problem, newton, step, options, wanted, |problem, at| {
+            problem.slope(at)
         })?;
         let length = distance(newton, step.before, step.next);
         let place = distance(newton, step.before, &turn.point) / length;
@@ -421,7 +424,7 @@ fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
     let along = |seen: &Seen| distance(newton, &parts[0].point, &seen.point);
     let place = along(&found);
     let next = parts.iter().position(|part| along(part) > place);
-    parts.insert(next.unwrap_or(parts.len() - 1), found);
+    parts.insert(next.unwrap_or(parts.len() - 1).max(1), found);
 }
 
 /// How far a point is behind another one, along the tangent there.

@@ -30,7 +30,7 @@ impl Seen {
         let values = (0..problem.watched().len()).map(|index| problem.test(index, point));
         let values = values.collect();
         let pairs = problem.pairs(point);
-        let slope = point.known_slope(problem.vanishing());
+        let slope = point.unless_rounding(problem.slope(point), problem.vanishing());
         Self {
             point: point.clone(),
             values,

@@ -7,6 +7,7 @@
 use super::Engine;
 use super::approach::{Approach, Reached, on_the_way};
 use super::explained::Bent;
+use super::inside::distance;
 use super::inside_touch::Steps;
 use super::seen::Seen;
 use crate::branches::extreme::{
@@ -27,6 +28,8 @@ pub(super) const AT_ONCE: f64 = 1e-8;
 const STEEP: f64 = 1e-6;
 /// An orbit farther from where it was sought than so many steps is another one.
 const FARTHEST: f64 = 3.0;
+/// A touch as near to an end of its step, as a part of it, shows nothing else than the end.
+const AT_END: f64 = 1e-6;
 /// Points whose gaps are remembered: those of the last two steps, and the next one.
 const READ: usize = 4;
 /// Extremes that appear, or disappear, farther from their level, in units of the gap, do not come to it in the same step.
@@ -103,6 +106,9 @@ impl Engine {
                 self.bent.append(&mut search.bent);
                 let orbits = std::mem::take(&mut search.orbits);
                 self.beside_touches(problem, newton, orbits, 2);
+                if self.ended.is_some() {
+                    return;
+                }
             }
             parts = last;
         }
@@ -131,6 +137,12 @@ impl Engine {
         }
         let ends = [before, before + 1].map(|place| self.seen[place].clone());
         let along = &ends[0].point;
+        let whole = distance(newton, along, &ends[1].point);
+        let within = |orbit: &CurvePoint| {
+            let part = distance(newton, along, orbit) / whole;
+            part > AT_END && part < 1.0 - AT_END
+        };
+        let orbits: Vec<CurvePoint> = orbits.into_iter().filter(within).collect();
         let touches = orbits.into_iter().map(|mut orbit| {
             // It was come to from either side.
             if newton

@@ -272,7 +272,7 @@ fn events_are_those_of_shooting() {
 }
 
 /// Events of a branch are those of shooting.
-fn events_agree(request: &FrequencyResponse) {
+fn events_agree(request: &FrequencyResponse) -> Branch {
     let branch = request.clone().by(ContactEquation::new()).run().unwrap();
     let shooting = request.clone().by(Shooting::new().tolerance(1e-12));
     let exact = shooting.run().unwrap();
@@ -296,6 +296,7 @@ fn events_agree(request: &FrequencyResponse) {
         assert_eq!(found.1, exact.1);
         assert!((found.0 - exact.0).abs() < 1e-9, "{found:?} {exact:?}");
     }
+    branch
 }
 
 /// The symmetry of an orbit breaks whose equations do not have it, since there is a stop on one side that it does not reach.

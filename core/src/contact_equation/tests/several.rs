@@ -2,8 +2,8 @@
 //! in both directions, and nothing is left that could not be located.
 
 use super::events_agree;
-use crate::FrequencyResponse;
 use crate::system::System;
+use crate::{Branch, EventKind, FrequencyResponse};
 
 crate::oscillator! {
     /// Two masses between stops on both sides.
@@ -47,9 +47,9 @@ fn row([k, c, s, g, drive, ky]: [f64; 6]) -> Row {
     }
 }
 
-fn agree(system: &dyn System, range: [f64; 2]) {
+fn agree(system: &dyn System, range: [f64; 2]) -> Branch {
     let [from, to] = range;
-    events_agree(&FrequencyResponse::of(system).from(from).to(to));
+    events_agree(&FrequencyResponse::of(system).from(from).to(to))
 }
 
 /// Two intervals that overlap while their switches are out of order see one extreme each: it is watched once.
@@ -91,7 +91,10 @@ fn tori_on_both_sides_of_a_touch_are_found() {
         11.396_3, 0.321_847, 1.356_08, 0.353_897, 0.416_173, 1.037_33,
     ]);
     for range in [[0.435_359, 1.061_12], [1.061_12, 0.435_359]] {
-        agree(&model, range);
+        let branch = agree(&model, range);
+        let tori = branch.events.iter();
+        let tori = tori.filter(|event| event.kind == EventKind::NeimarkSacker);
+        assert_eq!(tori.count(), 6);
     }
 }
 
@@ -99,9 +102,13 @@ fn tori_on_both_sides_of_a_touch_are_found() {
 #[test]
 fn folds_and_tori_beside_a_change_of_order_are_found() {
     let model = row([7.637_8, 0.445_477, 1.561_78, 0.312_49, 0.447_371, 0.732_671]);
-    agree(&model, [0.658_621, 0.982_975]);
+    let branch = agree(&model, [0.658_621, 0.982_975]);
+    assert!(branch.folds().count() == 2);
     let model = row([16.791, 0.437_089, 1.928_22, 0.136_941, 0.164_169, 0.634_741]);
-    agree(&model, [1.583_3, 0.795_33]);
+    let branch = agree(&model, [1.583_3, 0.795_33]);
+    let tori = branch.events.iter();
+    let tori = tori.filter(|event| event.kind == EventKind::NeimarkSacker);
+    assert_eq!(tori.count(), 2);
     let model = row([
         10.190_1, 0.390_334, 0.792_689, 0.166_426, 0.745_11, 1.139_19,
     ]);
