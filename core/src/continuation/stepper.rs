@@ -152,29 +152,6 @@ impl Stepper {
         }
     }
 
-    /// A tangent that turns however short the step is may be one of the last matrix alone, which was taken of unknowns before the solution: those
-    /// at which another gap is closed, if a level is touched in between. It is taken of the solution.
-    fn retake_tangent(
-        &mut self,
-        problem: &mut dyn Problem,
-        newton: &mut Newton,
-        point: &mut CurvePoint,
-    ) {
-        let mut tangent = vec![0.0; point.u.len()];
-        if !newton.tangent(problem, &point.u, &mut tangent, true) {
-            return;
-        }
-        let norm = newton.norm().length(point.scale, &tangent);
-        if norm.is_finite() && norm > 0.0 {
-            let taken = tangent.iter().map(|t| t / norm);
-            point
-                .tangent
-                .iter_mut()
-                .zip(taken)
-                .for_each(|(t, taken)| *t = taken);
-        }
-    }
-
     /// Rounding must not look like a turn of the curve.
     fn scale_at_trial(&mut self, newton: &Newton) -> Scale {
         let norm = newton.norm();
@@ -200,7 +177,7 @@ impl Stepper {
             Ok((mut point, distance)) => {
                 let mut angle = angle_between(newton.norm(), from, &point);
                 if steps.turns_too_far(angle) && steps.after_doubt(self.step).is_none() {
-                    self.retake_tangent(problem, newton, &mut point);
+                    retake_tangent(problem, newton, &mut point);
                     angle = angle_between(newton.norm(), from, &point);
                 }
                 let norm = newton.norm();
@@ -395,6 +372,24 @@ impl Stepper {
             && behind <= 0.0
             && step < 2.0 * self.options.steps.largest
             && norm.product(first.scale, &from.tangent, &first.tangent) > 0.9
+    }
+}
+
+/// A tangent that turns however short the step is may be one of the last matrix alone, which was taken of unknowns before the solution: those
+/// at which another gap is closed, if a level is touched in between. It is taken of the solution.
+fn retake_tangent(problem: &mut dyn Problem, newton: &mut Newton, point: &mut CurvePoint) {
+    let mut tangent = vec![0.0; point.u.len()];
+    if !newton.tangent(problem, &point.u, &mut tangent, true) {
+        return;
+    }
+    let norm = newton.norm().length(point.scale, &tangent);
+    if norm.is_finite() && norm > 0.0 {
+        let taken = tangent.iter().map(|t| t / norm);
+        point
+            .tangent
+            .iter_mut()
+            .zip(taken)
+            .for_each(|(t, taken)| *t = taken);
     }
 }
 
