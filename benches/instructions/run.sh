@@ -37,11 +37,9 @@ if ! command -v valgrind >/dev/null; then
     exit 0
 fi
 
-# The laws and what they call, without features of the runtime that other packages ask for. What reads their declarations is not optimised: there
-# are few of them.
+# With the features that the programs of the workspace ask for, so that the runtime is built once for all of them.
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$here/../../target}
-(cd "$here/../.." && cargo build --quiet --release --config profile.release.package.syn.opt-level=0 \
-    -p hertzian-instructions)
+(cd "$here/../.." && cargo build --quiet --release --workspace --bin hertzian-instructions)
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
