@@ -36,7 +36,7 @@ pub(super) const REFUSALS: usize = 8;
 /// the order of switches, or to where no equations are found.
 pub(super) const SHORTENED: usize = 8;
 /// The same where the orbit before it has no place in the equations of the point: what disappears between both may do so in any step.
-const DISPLACED: usize = 3;
+pub(super) const DISPLACED: usize = 3;
 /// Multipliers that may be wrong by more are not compared with one.
 const COARSE: f64 = 1e-3;
 /// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
@@ -68,9 +68,9 @@ pub(super) struct ContactBranch<'b, 'r> {
     /// How often the step to it was made again, shorter.
     pub(super) shortened: usize,
     /// The same, since the last orbit that was kept had no place in its equations.
-    displaced: usize,
-    /// The last orbit that was kept, in the present unknowns.
-    kept: Option<Vec<f64>>,
+    pub(super) displaced: usize,
+    /// The last orbit that was kept, in the present unknowns; empty where it is not known in them.
+    pub(super) kept: Vec<f64>,
     /// Points that are followed before fewer nodes are tried.
     pub(super) held: usize,
     visit: See<'b>,
@@ -146,7 +146,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             refused: 0,
             shortened: 0,
             displaced: 0,
-            kept: None,
+            kept: Vec::new(),
             visit,
         }
     }
@@ -210,10 +210,10 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
 
     /// Whether the equations that were prepared have a place for the last orbit that was kept, where the present ones have one.
     fn holds_last(&mut self) -> bool {
-        let (Some(kept), Some(next)) = (&self.kept, &self.next) else {
+        let Some(next) = self.next.as_ref().filter(|_| !self.kept.is_empty()) else {
             return true;
         };
-        let placed = self.run.transferred(kept, &next.equations, &next.u);
+        let placed = self.run.transferred(&self.kept, &next.equations, &next.u);
         placed.is_some()
     }
 
@@ -250,7 +250,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         self.refused = 0;
         self.shortened = 0;
         self.displaced = 0;
-        self.kept = Some(at.u.clone());
+        self.kept.clone_from(&at.u);
         self.held = self.held.saturating_sub(1);
         self.run.equations.known[0].clone_from(&at.u);
         if !self.keep_point(at, read) {
@@ -491,11 +491,12 @@ impl BranchProblem for ContactBranch<'_, '_> {
         if let Some(previous) = &halted.previous {
             look_ahead(&mut halted.point, previous, &equations);
         }
-        self.kept = if self.refused > 0 {
-            halted.previous.as_ref().map(|previous| previous.u.clone())
-        } else {
-            Some(u.clone())
+        let kept = match &halted.previous {
+            _ if self.refused == 0 => u.clone(),
+            Some(previous) => previous.u.clone(),
+            None => Vec::new(),
         };
+        self.kept = kept;
         // A curve is not closed where its first point has no place.
         halted.first = point(&halted.first).unwrap_or_else(|| nowhere(halted.first.scale));
         halted.before = None;
@@ -513,7 +514,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
             self.run.resolution = resolution;
             self.run.clear_finer();
             self.tested = None;
-            self.kept = None;
+            self.kept.clear();
             self.stuck = true;
         }
     }

@@ -1,7 +1,7 @@
 //! Where a run by the contact equation is, as data: what is left of it follows from that.
 
 use super::equations::Equations;
-use super::method::{ContactBranch, HELD, Last, REFUSALS, SHORTENED};
+use super::method::{ContactBranch, DISPLACED, HELD, Last, REFUSALS, SHORTENED};
 use super::placement::Placement;
 use super::plan::Frame;
 use super::problem::{ContactProblem, RESOLUTIONS};
@@ -41,6 +41,11 @@ pub(crate) struct Rest {
     /// How often the step to the next one was made again, shorter.
     #[cfg_attr(feature = "serde", serde(default))]
     shortened: usize,
+    #[cfg_attr(feature = "serde", serde(default))]
+    displaced: usize,
+    /// The last orbit that was kept, in the present unknowns, if it is known in them.
+    #[cfg_attr(feature = "serde", serde(default, with = "crate::serialise"))]
+    kept: Vec<f64>,
     /// Points that are followed before fewer nodes are tried.
     held: usize,
 }
@@ -50,13 +55,15 @@ impl Rest {
     pub(super) fn run<'r>(&self, problem: &'r ContactProblem, branch: &Branch) -> Option<Run<'r>> {
         let coordinates = problem.setting.layout.coordinates;
         let resolution = *RESOLUTIONS.get(self.resolution)?;
-        let vectors = [&self.reference].into_iter().chain(&self.known);
+        let vectors = [&self.reference, &self.kept].into_iter();
+        let vectors = vectors.chain(&self.known);
         let numbers = vectors.flatten().chain([&self.size, &self.made]);
         let mut numbers = numbers.chain(&self.finer);
         let possible = numbers.all(|x| x.is_finite())
             && self.screened.iter().all(Screened::is_possible)
             && self.refused <= REFUSALS
             && self.shortened <= SHORTENED
+            && self.displaced <= DISPLACED
             && self.held <= HELD
             && self.size > 0.0
             && self.reference.len() == 2 * coordinates
@@ -83,7 +90,8 @@ impl Rest {
         let mut equations = Equations::new(setting, self.made, skeleton, reference, self.size)?;
         let unknowns = equations.skeleton.unknowns();
         let is_known = |known: &Vec<f64>| known.is_empty() || known.len() == unknowns + 1;
-        if !self.walk.fits(unknowns) || !self.known.iter().all(is_known) {
+        let mut known = self.known.iter().chain([&self.kept]);
+        if !self.walk.fits(unknowns) || !known.all(is_known) {
             return None;
         }
         if !self
@@ -122,6 +130,8 @@ impl ContactBranch<'_, '_> {
             stuck: self.stuck,
             refused: self.refused,
             shortened: self.shortened,
+            displaced: self.displaced,
+            kept: self.kept.clone(),
             held: self.held,
         }
     }
@@ -129,7 +139,8 @@ impl ContactBranch<'_, '_> {
     /// As it was there.
     pub(super) fn take_up(&mut self, rest: &Rest) {
         (self.stuck, self.refused, self.held) = (rest.stuck, rest.refused, rest.held);
-        self.shortened = rest.shortened;
+        (self.shortened, self.displaced) = (rest.shortened, rest.displaced);
+        self.kept.clone_from(&rest.kept);
         self.last.clone_from(&rest.last);
     }
 }

@@ -103,7 +103,8 @@ pub(super) fn resume(
     request: &Request,
     equation: ContactEquation,
     otherwise: Option<Otherwise>,
-    (branch, rest): (&Branch, &Rest),
+    branch: &Branch,
+    rest: &Rest,
     visit: See<'_>,
 ) -> Result<Branch, Error> {
     let (range, problem) = equation.problem(request)?;

@@ -260,8 +260,15 @@ impl Resume<'_> {
                 otherwise,
                 ..
             } => {
-                let known = (branch, rest.as_ref());
-                by_contact_equation::resume(request, *equation, *otherwise, known, &mut *visit)?
+                let (equation, otherwise) = (*equation, *otherwise);
+                by_contact_equation::resume(
+                    request,
+                    equation,
+                    otherwise,
+                    branch,
+                    rest,
+                    &mut *visit,
+                )?
             }
             _ => return self.beyond(following, request, visit),
         };

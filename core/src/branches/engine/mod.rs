@@ -16,7 +16,8 @@
 //! 3. A step that [leaps](leap) over two folds is made again, shorter.
 //! 4. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
 //! 5. What events that were located [hide](counted) is looked for beside them.
-//! 6. Where an extreme of a gap goes through a level, the orbit that [touches](touch) it is located.
+//! 6. Where an extreme of a gap goes through a level, the orbit that [touches](touch) it is located, and what test functions show there and at no end
+//!    of the step is recorded.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions); Keller
 //! (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (the bordered determinant).
