@@ -224,11 +224,11 @@ fn reach(points: &[Point]) -> f64 {
 }
 
 impl Branch {
-    /// The same with what another one cost that was followed in vain.
-    fn after(mut self, vain: &Self) -> Self {
-        self.statistics += vain.statistics;
-        self.work += vain.work;
-        self.elapsed += vain.elapsed;
+    /// The same with what another one cost that was followed before it.
+    pub(super) fn after(mut self, before: &Self) -> Self {
+        self.statistics += before.statistics;
+        self.work += before.work;
+        self.elapsed += before.elapsed;
         self
     }
 }

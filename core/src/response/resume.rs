@@ -214,7 +214,7 @@ impl Resume<'_> {
         visit: See<'_>,
     ) -> Result<Branch, Error> {
         let branch = self.branch;
-        let mut resumed = match following {
+        let resumed = match following {
             Following::Balance {
                 context,
                 balance,
@@ -260,23 +260,13 @@ impl Resume<'_> {
                 otherwise,
                 ..
             } => {
-                let (equation, otherwise) = (*equation, *otherwise);
-                by_contact_equation::resume(
-                    request,
-                    equation,
-                    otherwise,
-                    branch,
-                    rest,
-                    &mut *visit,
-                )?
+                let (equation, other) = (*equation, *otherwise);
+                by_contact_equation::resume(request, equation, other, branch, rest, &mut *visit)?
             }
             _ => return self.beyond(following, request, visit),
         };
-        resumed = or_otherwise(following, request, Ok(resumed), visit)?;
-        resumed.statistics += branch.statistics;
-        resumed.work += branch.work;
-        resumed.elapsed += branch.elapsed;
-        Ok(resumed)
+        let resumed = or_otherwise(following, request, Ok(resumed), visit)?;
+        Ok(resumed.after(branch))
     }
 
     /// What the balance finds in place of a branch by the contact equation that ended so, or is left of it.

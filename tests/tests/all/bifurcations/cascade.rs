@@ -118,6 +118,23 @@ fn the_cascade_is_followed_by_itself() {
     }
 }
 
+/// Beside a touch the branch of period four turns twice within 6.5e-7 of the drive: two folds, which closed-form flows between switches have at
+/// the extremes of the drive over the displacement (`brentq` for switches, `fsolve` for orbits, a polynomial through nine of them; scipy).
+#[test]
+fn folds_on_both_sides_of_a_touch_are_found() {
+    let diagram = diagram(2);
+    let branches = diagram.branches.iter();
+    let four = branches.filter(|branch| branch.period() == 4);
+    let folds: Vec<f64> = four
+        .flat_map(|branch| branch.branch.folds())
+        .map(|event| event.point.value)
+        .collect();
+    for exact in [1.532_673_386_71, 1.532_674_035_26] {
+        let nearest = nearest(folds.iter(), exact, |fold| **fold).unwrap();
+        assert!((nearest - exact).abs() < 3e-11, "{nearest} {exact}");
+    }
+}
+
 /// Period four joins A4 with A6, so it is followed once; what is left out is said.
 #[test]
 fn what_is_known_is_not_followed_again() {
