@@ -51,7 +51,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let exponents = motion.exponents();
     for exponent in &exponents.exponents {
-        let (value, error) = (exponent.value, exponent.standard_error);
+        let (value, error) = (exponent.value, exponent.error);
         println!("exponent {value:.4} per period, standard error {error:.4}");
     }
     // Volumes of states shrink by damping in contact alone.

@@ -8,7 +8,7 @@ use clap::Args;
 use hertzian::bifurcation::{Diagram, Map};
 use hertzian::chart::{Chart, View};
 use hertzian::error::chain;
-use hertzian::export::{self, Decimal, Table};
+use hertzian::export::{self, Table};
 use hertzian::observe::Wanted;
 use hertzian::{Branch, Point, Verdict};
 
@@ -332,13 +332,13 @@ fn held(branch: &Branch) -> impl Iterator<Item = (&str, f64, &str)> {
 fn describe_model(text: &mut String, branch: &Branch) -> fmt::Result {
     writeln!(text, "{}: {}", branch.model.name, branch.model.equation)?;
     for (name, value, unit) in held(branch) {
-        writeln!(text, "{name} = {}", with_unit(Decimal::plain(value), unit))?;
+        writeln!(text, "{name} = {}", with_unit(export::plain(value), unit))?;
     }
     Ok(())
 }
 
 /// A number with its unit, if it has one.
-fn with_unit(number: Decimal, unit: &str) -> String {
+fn with_unit(number: impl std::fmt::Display, unit: &str) -> String {
     if unit.is_empty() {
         number.to_string()
     } else {
@@ -357,7 +357,7 @@ fn describe_branch(
     let (Some(from), Some(to)) = (branch.points.first(), branch.points.last()) else {
         return writeln!(text, "branch {number}: no orbits, {}", branch.stopped);
     };
-    let [from, to] = [from, to].map(|point| Decimal::rounded(point.value, 9));
+    let [from, to] = [from, to].map(|point| export::rounded(point.value, 9));
     writeln!(
         text,
         "branch {number}: {count} orbits of period {}, {varied} from {from} to {to}; {}",
@@ -381,7 +381,7 @@ fn describe_branch(
         writeln!(text, "  {}", branch.describe(event))?;
     }
     for turn in &branch.turns {
-        let value = Decimal::rounded(turn.value, 9);
+        let value = export::rounded(turn.value, 9);
         writeln!(text, "  {} near {value}, not located", turn.kind)?;
     }
     if let Some(winding) = branch.winding() {
@@ -399,7 +399,7 @@ fn describe_largest(text: &mut String, branch: &Branch, wanted: &Wanted) -> fmt:
     let Some((size, point)) = known.max_by(|(a, _), (b, _)| a.total_cmp(b)) else {
         return writeln!(text, "  {wanted} is not in the file");
     };
-    let value = Decimal::rounded(point.value, 6);
+    let value = export::rounded(point.value, 6);
     let unit = branch.model.unit_of_varied(&branch.varied);
     // What leads has as many digits as its error bears.
     let what = if *wanted == branch.leading() {
@@ -423,7 +423,7 @@ fn in_words(branch: &Branch, wanted: &Wanted, value: f64) -> String {
         _ => format!(" of {}", wanted.name),
     };
     let unit = wanted.measure.unit(model.unit_of(&wanted.name));
-    let value = with_unit(Decimal::rounded(value, 6), &unit);
+    let value = with_unit(export::rounded(value, 6), &unit);
     format!("{}{name} {value}", wanted.measure.in_words())
 }
 
@@ -448,7 +448,7 @@ fn describe_value(
     writeln!(
         text,
         "at {varied} = {}: {all} orbits, {stable} of them stable",
-        Decimal::plain(value)
+        export::plain(value)
     )?;
     for (number, branch, passing) in found {
         let leading = [branch.leading()];
@@ -468,7 +468,7 @@ fn describe_value(
             || "stability changes beside it".to_owned(),
             |verdict| verdict.to_string(),
         );
-        let [a, b] = passing.ends.map(|point| Decimal::rounded(point.value, 6));
+        let [a, b] = passing.ends.map(|point| export::rounded(point.value, 6));
         writeln!(
             text,
             "  branch {number}: about {sizes}, {verdict} (between orbits at {a} and {b})"

@@ -104,9 +104,8 @@ pub use balance::aft::Aft;
 pub use balance_branch::options::HarmonicBalance;
 pub use bifurcation::Bifurcations;
 pub use bifurcation::backbone;
-pub use bifurcation::error::BifurcationError;
 pub use branches::branch::{Branch, Model};
-pub use branches::error::{Attempts, OrbitError};
+pub use branches::error::OrbitError;
 pub use branches::orbit::Orbit;
 pub use branches::point::{Event, Point};
 pub use branches::progress::{Progress, Stage};
@@ -123,10 +122,11 @@ pub use laws::emitted;
 pub use laws::generic;
 pub use model::error::ModelError;
 pub use model::request::RequestError;
-pub use model::valued::Valued;
+pub use model::valued::with_values;
 pub use model::{remarks, structure};
 #[doc(no_inline)]
 pub use nalgebra::Complex;
+pub use numeric::estimate::Estimate;
 pub use numeric::{fourier, power};
 pub use orbit::stability::{Method, Stability, Verdict};
 pub use orbit::{observe, stability};
@@ -135,7 +135,6 @@ pub use report::export;
 #[doc(hidden)]
 pub use response::stages;
 pub use response::{Choice, Chosen, FrequencyResponse, OrbitMethod, Resume};
-pub use sensitivity::Derivative;
 pub use shooting::Shooting;
 pub use system::System;
 
@@ -143,7 +142,6 @@ pub use system::System;
 #[cfg(feature = "plot")]
 pub mod chart {
     pub use crate::report::band::Band;
-    pub use crate::report::error::ViewError;
     pub use crate::report::picture::event_markers;
     pub use crate::report::view::{Frequency, View};
     pub use hertzian_chart::*;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use hertzian::{Branch, EventKind, FrequencyResponse, Point, Shooting, Stop, Valued};
+use hertzian::{Branch, EventKind, FrequencyResponse, Point, Shooting, Stop, with_values};
 
 use crate::path::{Node, Sheet};
 use crate::problem::Problem;
@@ -48,7 +48,7 @@ impl Curve {
     ) -> Result<Self, String> {
         let of = &problem.groups[group];
         let values = problem.values_of(group, unknowns);
-        let system = Valued::new(&problem.system, values);
+        let system = with_values(&problem.system, values);
         let [low, high] = problem.ends(group);
         let mut request = FrequencyResponse::of(&system)
             .by(Shooting::new())

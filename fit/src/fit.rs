@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use hertzian::{Cancel, System, Valued};
+use hertzian::{Cancel, System, with_values};
 
 use crate::checks;
 use crate::data::DataSet;
@@ -180,7 +180,7 @@ impl Fit {
                 values[place] = value;
             }
         }
-        let system: Arc<dyn System> = Arc::new(Valued::new(&self.system, values));
+        let system = with_values(&self.system, values);
         Self {
             system,
             ..self.fixed(name)

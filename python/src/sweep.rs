@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use hertzian::attractors::sweep::{Row, Sweep, Swept};
-use hertzian::time::history::{Span, record};
+use hertzian::time::history::record;
 use hertzian::time::stroboscope::Stroboscope;
 use hertzian::time::{self, Options};
 use hertzian::{RequestError, System};
@@ -179,11 +179,16 @@ pub fn history<'py>(
         |cancel, _| {
             let options = Options::default().tolerance(tolerance).cancel(cancel);
             let mut map = Stroboscope::new(time::of(system, omega, options)?);
-            let span = Span { periods, samples };
-            let moved = record(&mut map, &mut state, span, &mut |part, state| {
-                seen.0.push(part * period);
-                seen.1.extend_from_slice(state);
-            });
+            let moved = record(
+                &mut map,
+                &mut state,
+                periods,
+                samples,
+                &mut |part, state| {
+                    seen.0.push(part * period);
+                    seen.1.extend_from_slice(state);
+                },
+            );
             Ok(moved?)
         },
         |()| true,

@@ -7,7 +7,7 @@ use hertzian::bifurcation::{Bifurcations, Diagram, Reason, Settling};
 use hertzian::error::{ErrorKind, chain};
 use hertzian::{
     Branch, Cancel, Chosen, ContactEquation, Error, FrequencyResponse, HarmonicBalance,
-    OrbitMethod, Shooting, Valued,
+    OrbitMethod, Shooting, System,
 };
 
 use crate::plan::{Method, What};
@@ -132,7 +132,7 @@ impl Of<'_> {
     fn by<M: OrbitMethod>(
         &mut self,
         request: FrequencyResponse<M>,
-        system: &Valued,
+        system: &dyn System,
         cancel: &Cancel,
     ) -> Result<(), Error> {
         match self.study.plan.request.what {
@@ -281,7 +281,7 @@ impl Of<'_> {
     fn solutions<M: OrbitMethod>(
         &mut self,
         request: &FrequencyResponse<M>,
-        system: &Valued,
+        system: &dyn System,
     ) -> Result<(), Error> {
         let values = &self.study.at;
         let (name, value) = self.study.second(system);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use hertzian::observe::Wanted;
 use hertzian::power::Instructions;
-use hertzian::{EventKind, System, Valued};
+use hertzian::{EventKind, System, with_values};
 
 use crate::checks::{at_key, check_request, kinds, signals, within};
 use crate::design::{Designed, List};
@@ -288,12 +288,12 @@ impl Prepared {
     }
 
     /// The system of a variant, and the frequency where a parameter is followed.
-    pub(crate) fn variant(&self, index: usize) -> (Valued, Option<f64>) {
+    pub(crate) fn variant(&self, index: usize) -> (Arc<dyn System>, Option<f64>) {
         self.with(self.designed.values(index))
     }
 
     /// The same, with its frequency, at values of what varies along the branches and of the only thing that varies besides.
-    pub(crate) fn at_both(&self, [along, other]: [f64; 2]) -> (Valued, f64) {
+    pub(crate) fn at_both(&self, [along, other]: [f64; 2]) -> (Arc<dyn System>, f64) {
         let (system, omega) = self.with(vec![other]);
         let mut values = vec![0.0; self.values.len()];
         system.values(&mut values);
@@ -301,7 +301,7 @@ impl Prepared {
         match parameters.position(|facts| facts.name == self.plan.request.vary) {
             Some(place) => {
                 values[place] = along;
-                let system = Valued::new(&self.system, values);
+                let system = with_values(&self.system, values);
                 (system, omega.unwrap_or(f64::NAN))
             }
             None => (system, along),
@@ -309,7 +309,7 @@ impl Prepared {
     }
 
     /// The same at values of what varies from variant to variant.
-    fn with(&self, varying: Vec<f64>) -> (Valued, Option<f64>) {
+    fn with(&self, varying: Vec<f64>) -> (Arc<dyn System>, Option<f64>) {
         let mut values = self.values.clone();
         let mut omega = self.plan.request.omega;
         for (place, value) in self.places.iter().zip(varying) {
@@ -318,11 +318,11 @@ impl Prepared {
                 None => omega = Some(value),
             }
         }
-        (Valued::new(&self.system, values), omega)
+        (with_values(&self.system, values), omega)
     }
 
     /// The name and the value of something besides what varies along a branch: with the frequency, or without a parameter, that.
-    pub(crate) fn second(&self, system: &Valued) -> (&str, f64) {
+    pub(crate) fn second(&self, system: &dyn System) -> (&str, f64) {
         let along = &self.plan.request.vary;
         let mut values = vec![0.0; self.values.len()];
         system.values(&mut values);

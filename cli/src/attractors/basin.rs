@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use hertzian::attractors::basin::{Attractor, Axis, Basin, Basins, Fate, Grid};
 use hertzian::chart::{Chart, Colour, Raster, Series};
-use hertzian::export::Npy;
+use hertzian::export;
 use hertzian::{Complex, Progress};
 
 use super::output::{Results, entries, number};
@@ -30,13 +30,13 @@ const COLOURED: usize = 9;
 pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     let grid = grid(task, task.options.grid)?;
     let request = request(task).grid(grid.clone());
-    let mut log = task.log(&request)?;
+    let checkpoint = task.checkpoint()?;
     let visit = |progress: Progress<'_>| {
         said(task, progress);
         ControlFlow::Continue(())
     };
-    let basins = match &mut log {
-        Some(log) => request.resume(log, visit),
+    let basins = match checkpoint {
+        Some((path, model)) => request.resume(path, &model, visit),
         None => request.run_with(visit),
     }?;
     let facts = task.system.facts();
@@ -44,9 +44,7 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     let multipliers = (1..=2 * facts.coordinates.len())
         .flat_map(|i| ["re", "im"].map(|part| format!("multiplier_{i}_{part}")));
     let columns = grid.columns.count;
-    let mut array = Npy::<i16>::new(columns);
     let labels: Vec<i16> = basins.fates.iter().map(|fate| fate.label()).collect();
-    labels.chunks(columns).for_each(|row| array.row(row));
     let names: Vec<String> = names
         .into_iter()
         .chain(entries(&facts.coordinates))
@@ -55,7 +53,7 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     Ok(Results {
         rows: rows(&basins, names.len()),
         names,
-        array: array.to_bytes(),
+        array: export::npy_of_labels(columns, &labels),
         svg: chart(task, &grid, &basins)?.to_svg(),
         summary: summary(&basins),
         complete: basins.complete,

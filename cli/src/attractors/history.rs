@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use hertzian::chart::{Chart, Page, Series};
 use hertzian::time::history;
-use hertzian::time::history::Span;
 use hertzian::time::stroboscope::Stroboscope;
 
 use super::output::{Results, Table, entries};
@@ -89,10 +88,8 @@ fn enlargement(
     history::record(
         map,
         &mut moving,
-        Span {
-            periods: last - from,
-            samples: SAMPLES,
-        },
+        last - from,
+        SAMPLES,
         &mut |time, state| {
             curve.push([from as f64 + time, state[0]]);
         },

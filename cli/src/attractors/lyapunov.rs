@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use hertzian::attractors::lyapunov::{Exponents, Lyapunov};
 use hertzian::chart::{Chart, Page, Series};
-use hertzian::time::divergence::Divergence;
 
 use super::output::{Results, Table};
 use super::run::{Failure, Task};
@@ -31,9 +30,9 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         let values = task.values(drive)?;
         let mut map = task.map(drive)?;
         let start = task.start()?;
-        let mut lyapunov = Lyapunov::new(&mut map, &start);
-        let divergence = Divergence::new(task.system, &values, options.model.frequency())?;
-        lyapunov = lyapunov.divergence(divergence);
+        let omega = options.model.frequency();
+        let lyapunov = Lyapunov::new(&mut map, &start);
+        let mut lyapunov = lyapunov.divergence(task.system, &values, omega)?;
         for _ in 0..options.transient.unwrap_or(5000) {
             if !task.goes_on() {
                 break;
@@ -54,17 +53,12 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         let found = lyapunov.exponents();
         let periods = (lyapunov.batches().len() * length) as f64;
         let mut row = vec![task.amplitude(drive)?, periods];
-        row.extend(
-            found
-                .exponents
-                .iter()
-                .flat_map(|e| [e.value, e.standard_error]),
-        );
+        row.extend(found.exponents.iter().flat_map(|e| [e.value, e.error]));
         let divergence = found.divergence.unwrap_or_default();
         row.extend([found.sum.value, divergence.value]);
         table.row(&row);
         describe(&mut summary, &task.title(drive, "")?, &found);
-        let largest: Vec<f64> = lyapunov.batches().iter().map(|b| b.exponents[0]).collect();
+        let largest: Vec<f64> = lyapunov.batches().iter().map(|b| b[0]).collect();
         page = page.chart(chart(&task.title(drive, "")?, &largest, length, &found));
     }
     Ok(table.with(page.to_svg(), summary, complete))
@@ -96,7 +90,7 @@ fn chart(title: &str, batches: &[f64], length: usize, found: &Exponents) -> Char
     let largest = found.exponents[0];
     let ends = [at(0), at(batches.len() - 1)];
     let level = |by: f64| {
-        let value = largest.value + by * largest.standard_error;
+        let value = largest.value + by * largest.error;
         ends.map(|x| [x, value]).to_vec()
     };
     let mut chart = Chart::new(title)
@@ -114,7 +108,7 @@ fn chart(title: &str, batches: &[f64], length: usize, found: &Exponents) -> Char
                 .map(|(i, &b)| [at(i), b])
                 .collect(),
         });
-    if largest.standard_error.is_finite() {
+    if largest.error.is_finite() {
         for (by, label) in [(-1.0, "one standard error"), (1.0, "")] {
             chart = chart.trace(Series {
                 label: label.to_owned(),

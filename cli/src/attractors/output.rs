@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use hertzian::export::{self, Npy};
+use hertzian::export;
 
 use super::run::Failure;
 use crate::response::files;
@@ -31,14 +31,14 @@ pub struct Results {
 pub struct Table {
     names: Vec<String>,
     rows: Vec<Vec<String>>,
-    array: Npy<f64>,
+    array: Vec<f64>,
 }
 
 impl Table {
     /// A table without rows.
     pub fn new(names: Vec<String>) -> Self {
         Self {
-            array: Npy::new(names.len()),
+            array: Vec::new(),
             rows: Vec::new(),
             names,
         }
@@ -48,15 +48,15 @@ impl Table {
     pub fn row(&mut self, values: &[f64]) {
         self.rows
             .push(values.iter().map(|&value| number(value)).collect());
-        self.array.row(values);
+        self.array.extend(values);
     }
 
     /// With a picture and a summary.
     pub fn with(self, svg: String, summary: String, complete: bool) -> Results {
         Results {
+            array: export::npy(self.names.len(), &self.array),
             names: self.names,
             rows: self.rows,
-            array: self.array.to_bytes(),
             svg,
             summary,
             complete,

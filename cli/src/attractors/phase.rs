@@ -6,7 +6,6 @@ use std::ops::ControlFlow;
 use hertzian::attractors::basin::{Attractor, Basins, Fate};
 use hertzian::chart::{Chart, Page, Series};
 use hertzian::time::history;
-use hertzian::time::history::Span;
 use hertzian::time::stroboscope::Stroboscope;
 
 use super::basin::{grid, name, request, said};
@@ -253,10 +252,8 @@ impl Portrait {
         history::record(
             &mut self.map,
             &mut state,
-            Span {
-                periods,
-                samples: SAMPLES,
-            },
+            periods,
+            SAMPLES,
             &mut |_, state| {
                 curve.push(place(state));
             },

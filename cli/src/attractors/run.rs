@@ -5,7 +5,6 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use hertzian::attractors::log::{Log, LogError};
 use hertzian::error::chain;
 use hertzian::time;
 use hertzian::time::stroboscope::Stroboscope;
@@ -43,8 +42,6 @@ pub enum Failure {
     Model(PathBuf, ModelError),
     /// The motion cannot be computed.
     Motion(FlowError),
-    /// The checkpoint cannot be used.
-    Checkpoint(LogError),
     /// A file cannot be written.
     File(PathBuf, io::Error),
 }
@@ -56,7 +53,6 @@ impl std::fmt::Display for Failure {
             Self::Option(message) => f.write_str(message),
             Self::Model(path, error) => f.write_str(&error.describe(path)),
             Self::Motion(error) => error.fmt(f),
-            Self::Checkpoint(error) => error.fmt(f),
             Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),
         }
     }
@@ -73,12 +69,6 @@ impl From<Error> for Failure {
 impl From<FlowError> for Failure {
     fn from(error: FlowError) -> Self {
         Self::Motion(error)
-    }
-}
-
-impl From<LogError> for Failure {
-    fn from(error: LogError) -> Self {
-        Self::Checkpoint(error)
     }
 }
 
@@ -361,11 +351,11 @@ impl Task<'_> {
         Ok(start.clone())
     }
 
-    /// The log of the checkpoint, if one was asked for. It belongs to this oscillator and to this request.
+    /// The path of the checkpoint, if one was asked for, and the oscillator that it belongs to.
     ///
     /// # Errors
-    /// If it cannot be used.
-    pub fn log(&self, request: &impl std::fmt::Debug) -> Result<Option<Log>, Failure> {
+    /// If the file of the oscillator cannot be read.
+    pub fn checkpoint(&self) -> Result<Option<(&Path, String)>, Failure> {
         let Some(path) = &self.options.checkpoint else {
             return Ok(None);
         };
@@ -379,12 +369,12 @@ impl Task<'_> {
             None => format!("continuous {}, alpha {:?}", model.continuous, model.alpha),
         };
         let identity = format!(
-            "hertzian {}, {}, {laws}, with {:?}, omega {omega:?}, tolerance {tolerance:?}, {request:?}",
+            "hertzian {}, {}, {laws}, with {:?}, omega {omega:?}, tolerance {tolerance:?}",
             env!("CARGO_PKG_VERSION"),
             facts.equation,
             self.values(None)?,
         );
-        Ok(Some(Log::open(path, &identity)?))
+        Ok(Some((path, identity)))
     }
 
     /// The amplitudes that were asked for; none for that of the oscillator.

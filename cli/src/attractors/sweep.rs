@@ -8,7 +8,7 @@ use hertzian::attractors::sweep::{Row, Sweep};
 use hertzian::chart::{Chart, Frequency, Series};
 use hertzian::observe::outputs_at;
 use hertzian::time::FlowError;
-use hertzian::time::poincare::{Direction, Section};
+use hertzian::time::poincare::Section;
 
 use super::options::Swept;
 use super::output::{Results, Table, entries};
@@ -23,14 +23,14 @@ use crate::response::files::page;
 pub fn run(task: &Task<'_>, swept: Swept) -> Result<Results, Failure> {
     check(task, swept)?;
     let request = request(task, swept)?;
-    let mut log = task.log(&request)?;
+    let checkpoint = task.checkpoint()?;
     let visit = |progress: Progress<'_>| {
         let value = progress.value.unwrap_or(f64::NAN);
         task.say(|| format!("{} = {value:.6}", swept.name()));
         ControlFlow::Continue(())
     };
-    let found = match &mut log {
-        Some(log) => request.resume(log, visit),
+    let found = match checkpoint {
+        Some((path, model)) => request.resume(path, &model, visit),
         None => request.run_with(visit),
     }?;
     results(task, swept, &found)
@@ -61,7 +61,7 @@ fn request(task: &Task<'_>, swept: Swept) -> Result<Sweep, Failure> {
         request = request.vary(swept.name()).omega(omega);
     }
     if let Some(value) = options.section {
-        request = request.section(Section::entry(0, value, Direction::Rising));
+        request = request.section(Section::entry(0, value));
     }
     Ok(request)
 }

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use hertzian::bifurcation::Reason;
 use hertzian::chart::{Line, Run};
-use hertzian::export::Decimal;
+use hertzian::export;
 use hertzian::observe::{Measure, Wanted};
 use hertzian::{Branch, Error, Event, Point, Stop, Verdict};
 use serde::Serialize;
@@ -207,7 +207,7 @@ fn ends(traced: &Traced) -> Vec<String> {
             notes.push(format!("{of}{}", branch.stopped));
         }
         for turn in &branch.turns {
-            let value = of_varied(branch, Decimal::rounded(turn.value, 6));
+            let value = of_varied(branch, export::rounded(turn.value, 6));
             notes.push(format!("{of}{value}: not confirmed as a {}", turn.kind));
         }
     }
@@ -223,7 +223,7 @@ fn ends(traced: &Traced) -> Vec<String> {
         let branch = &traced.diagram.branches[omitted.branch].branch;
         let event = branch.events.get(omitted.event).filter(|_| failed);
         notes.extend(event.map(|event| {
-            let value = of_varied(branch, Decimal::rounded(event.point.value, 6));
+            let value = of_varied(branch, export::rounded(event.point.value, 6));
             let (number, reason) = (omitted.branch + 1, &omitted.reason);
             format!("branch {number}: what begins at {value} was not followed: {reason}")
         }));
@@ -296,7 +296,7 @@ fn mark(branch: &Branch, number: usize, event: &Event, wanted: &Wanted) -> Marke
         value,
         error: event.error.is_finite().then_some(event.error),
         size: measure(branch, wanted, &event.point),
-        written: of_varied(branch, Decimal::to_error(value, event.error)),
+        written: of_varied(branch, export::to_error(value, event.error)),
         said: branch.describe(event),
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use hertzian::error::chain;
-use hertzian::export::Decimal;
+use hertzian::export;
 use hertzian::observe::Wanted;
 use hertzian::system::{Part, Place, System, Wave};
 use hertzian::{Branch, Cancel, Error, Point};
@@ -110,14 +110,14 @@ pub struct Contact {
 pub fn at(traced: &Traced, value: f64, plot: &str, cancel: &Cancel) -> Result<Orbits, Fault> {
     let mut found = Orbits {
         value,
-        said: Decimal::plain(value).to_string(),
+        said: export::plain(value).to_string(),
         orbits: Vec::new(),
         notes: Vec::new(),
     };
     let Some(first) = traced.branches().next() else {
         return Ok(found);
     };
-    found.said = of_varied(first, Decimal::plain(value));
+    found.said = of_varied(first, export::plain(value));
     let wanted = wanted(plot, first)?;
     for (number, branch) in traced.branches().enumerate() {
         let points = match branch.at(value) {

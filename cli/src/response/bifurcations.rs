@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use hertzian::bifurcation::{Bifurcations, Diagram, DiagramBranch, Origin, Reason};
 use hertzian::chart::{Chart, Scale, Series, View};
 use hertzian::error::{ErrorKind, chain};
-use hertzian::export::Decimal;
+use hertzian::export;
 use hertzian::shooting::BifurcationCurve;
 use hertzian::{
     Branch, Cancel, Error, Event, EventKind, FrequencyResponse, HarmonicBalance, ModelError, Point,
@@ -310,7 +310,7 @@ impl Found {
             )?;
             for special in &track.special {
                 let place = |number: usize| {
-                    let value = Decimal::rounded(special.values[number], 9);
+                    let value = export::rounded(special.values[number], 9);
                     value::with(self.unit(&track.names[number]), value)
                 };
                 let [a, b] = [place(0), place(1)];

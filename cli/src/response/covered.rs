@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use hertzian::attractors::basin::Fate;
 use hertzian::bifurcation::{Bifurcations, Diagram, Reason, Searched, Settling};
-use hertzian::export::Decimal;
+use hertzian::export;
 use hertzian::{ContactEquation, Error, FrequencyResponse, OrbitMethod, Progress, Shooting, Stop};
 
 use super::bifurcations::describe;
@@ -105,7 +105,7 @@ fn write_branches(text: &mut String, diagram: &Diagram) -> fmt::Result {
 /// None: writing to a string does not fail.
 pub fn write_search(text: &mut String, diagram: &Diagram, varied: &str) -> fmt::Result {
     for searched in &diagram.searched {
-        let value = in_diagram(diagram, Decimal::rounded(searched.value, 6));
+        let value = in_diagram(diagram, export::rounded(searched.value, 6));
         writeln!(
             text,
             "searched   {varied} {value}: {}",
@@ -113,11 +113,11 @@ pub fn write_search(text: &mut String, diagram: &Diagram, varied: &str) -> fmt::
         )?;
     }
     for (value, reason) in &diagram.missed {
-        let value = in_diagram(diagram, Decimal::plain(*value));
+        let value = in_diagram(diagram, export::plain(*value));
         writeln!(text, "missed     {varied} {value}: {reason}")?;
     }
     for [low, high] in &diagram.uncovered {
-        let [low, high] = [low, high].map(|value| Decimal::rounded(*value, 6));
+        let [low, high] = [low, high].map(|value| export::rounded(*value, 6));
         let high = in_diagram(diagram, high);
         writeln!(text, "no orbit   {varied} from {low} to {high}")?;
     }

@@ -7,7 +7,7 @@ use std::path::Path;
 use hertzian::bifurcation::Diagram;
 use hertzian::chart::{Chart, Page, View};
 use hertzian::error::{ErrorKind, chain};
-use hertzian::export::{self, Decimal};
+use hertzian::export;
 use hertzian::observe::Wanted;
 use hertzian::sensitivity::{Measured, Sensitivities, Uncertain};
 use hertzian::{Branch, Cancel, Error, Event, Model, Point, System};
@@ -259,7 +259,7 @@ fn table(out: &mut csv::Writer<Vec<u8>>, branches: &[Branch], all: &[At]) -> csv
 
 /// A number as short as it reads back to the same bits.
 fn cell(number: f64) -> String {
-    Decimal::plain(number).to_string()
+    export::plain(number).to_string()
 }
 
 /// A chart for every event, two in a row.
@@ -347,7 +347,7 @@ pub fn summary(branches: &[Branch], all: &[At]) -> String {
             continue;
         };
         let kind = event.kind;
-        let value = of_varied(branch, Decimal::rounded(at.value, 6));
+        let value = of_varied(branch, export::rounded(at.value, 6));
         let moves = match (&at.derivatives, &at.why) {
             (Some(found), _) => by_all(found),
             (None, why) => why.clone().unwrap_or_default(),
@@ -368,7 +368,7 @@ fn by_all(found: &Sensitivities) -> String {
         format!(
             "d{}/d{name} = {}",
             found.varied,
-            Decimal::to_error(by.value, error)
+            export::to_error(by.value, error)
         )
     });
     told.collect::<Vec<_>>().join(", ")

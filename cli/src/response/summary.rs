@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 use std::path::Path;
 
 use hertzian::chart::Chart;
-use hertzian::export::Decimal;
+use hertzian::export;
 use hertzian::{Branch, Event, EventKind, Point, System, Verdict};
 
 use super::options::Options;
@@ -91,7 +91,7 @@ fn write_all(
     folds(text, branch)?;
     stability(text, branch)?;
     let solutions = at.iter().map(|point| {
-        let value = of_varied(branch, Decimal::plain(point.value));
+        let value = of_varied(branch, export::plain(point.value));
         let asked = options.plot.iter();
         let asked = asked.filter_map(|of| branch.describe_measured(&of.to_string(), point).ok());
         let asked: Vec<String> = asked.collect();
@@ -187,8 +187,8 @@ fn range(text: &mut String, branch: &Branch) -> fmt::Result {
             "points     {}, {} from {} to {}{harmonics}",
             branch.points.len(),
             branch.varied,
-            Decimal::rounded(first.value, 6),
-            of_varied(branch, Decimal::rounded(last.value, 6)),
+            export::rounded(first.value, 6),
+            of_varied(branch, export::rounded(last.value, 6)),
         )?;
     }
     writeln!(text, "ended      {}", branch.stopped)
@@ -216,7 +216,7 @@ fn method(text: &mut String, options: &Options, branch: &Branch) -> fmt::Result 
 fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
     let folds = branch.folds().map(|fold| {
         let point = &fold.point;
-        let value = of_varied(branch, Decimal::to_error(point.value, fold.error));
+        let value = of_varied(branch, export::to_error(point.value, fold.error));
         let size = branch.describe_size(point);
         format!(
             "{} {value} (error {:.0e}), {size}",
@@ -226,7 +226,7 @@ fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
     list(text, "fold", folds)?;
     let turns = branch.turns.iter().map(|turn| {
         let varied = &branch.varied;
-        let value = of_varied(branch, Decimal::rounded(turn.value, 6));
+        let value = of_varied(branch, export::rounded(turn.value, 6));
         match turn.kind {
             EventKind::Fold => {
                 format!("{varied} {value}, not confirmed as a fold: the slope jumps")
@@ -243,7 +243,7 @@ fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
             format!(
                 "{} {} (error {:.0e}), broken: a branch without it crosses",
                 branch.varied,
-                of_varied(branch, Decimal::to_error(event.point.value, event.error)),
+                of_varied(branch, export::to_error(event.point.value, event.error)),
                 event.error
             )
         });
@@ -269,13 +269,13 @@ fn stability(text: &mut String, branch: &Branch) -> fmt::Result {
                     "{from} before the {} at {} {}, {to} after it",
                     event.kind,
                     branch.varied,
-                    of_varied(branch, Decimal::rounded(event.point.value, 6))
+                    of_varied(branch, export::rounded(event.point.value, 6))
                 ),
                 None => format!(
                     "{from} until {} {}, {to} from {}",
                     branch.varied,
-                    of_varied(branch, Decimal::rounded(before.value, 6)),
-                    of_varied(branch, Decimal::rounded(behind.value, 6))
+                    of_varied(branch, export::rounded(before.value, 6)),
+                    of_varied(branch, export::rounded(behind.value, 6))
                 ),
             }
         })

@@ -16,16 +16,15 @@ const LINE: usize = 1000;
 
 /// An open log.
 #[derive(Debug)]
-pub struct Log {
+pub(crate) struct Log {
     file: File,
     path: PathBuf,
     records: Vec<Vec<u8>>,
 }
 
 /// Why there is no log, or none any more.
-#[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LogError {
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum LogError {
     /// The file cannot be read or written.
     #[error("cannot use the checkpoint {}: {kind}", .path.display())]
     File {
@@ -44,11 +43,10 @@ pub enum LogError {
     },
 }
 
-crate::error::room_error! {
-    LogError, |_| crate::error::ErrorKind::File;
-    File { path, kind }
-    Other { path, found }
-    ;
+impl From<LogError> for crate::error::Error {
+    fn from(error: LogError) -> Self {
+        Self::new(crate::error::ErrorKind::File, error)
+    }
 }
 
 impl Log {
@@ -57,8 +55,8 @@ impl Log {
     ///
     /// # Errors
     /// If the file cannot be read and written, or belongs to something else.
-    pub fn open(path: impl AsRef<Path>, identity: &str) -> Result<Self, LogError> {
-        let path = path.as_ref().to_path_buf();
+    pub(super) fn open(path: &Path, identity: &str) -> Result<Self, LogError> {
+        let path = path.to_path_buf();
         let failed = |source: io::Error| LogError::File {
             path: path.clone(),
             kind: source.kind(),
@@ -105,7 +103,7 @@ impl Log {
     }
 
     /// The records that were there when it was opened.
-    pub fn records(&self) -> &[Vec<u8>] {
+    pub(super) fn records(&self) -> &[Vec<u8>] {
         &self.records
     }
 
@@ -113,7 +111,7 @@ impl Log {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn append(&mut self, bytes: &[u8]) -> Result<(), LogError> {
+    pub(super) fn append(&mut self, bytes: &[u8]) -> Result<(), LogError> {
         let mut frame = Vec::with_capacity(FRAME + bytes.len());
         frame.extend((bytes.len() as u64).to_le_bytes());
         frame.extend(checksum(bytes).to_le_bytes());
@@ -255,10 +253,10 @@ mod tests {
         std::fs::write(&path, "some text").expect("written");
         let error = Log::open(&path, "that").expect_err("no log");
         assert!(error.to_string().contains("no checkpoint"), "{error}");
-        let error = Log::open(path.join("missing"), "that").expect_err("no folder");
+        let error = Log::open(&path.join("missing"), "that").expect_err("no folder");
         assert!(error.to_string().contains("cannot use"), "{error}");
         for device in ["/dev/zero", "/dev/null", "/"] {
-            let error = Log::open(device, "that").expect_err("no file");
+            let error = Log::open(Path::new(device), "that").expect_err("no file");
             assert!(error.to_string().contains("no checkpoint"), "{error}");
         }
     }

@@ -14,8 +14,10 @@
 //!
 //! Source: Benettin, Galgani, Giorgilli and Strelcyn (1980), Meccanica 15, 9.
 
-use crate::time::divergence::{Divergence, Integral};
-use crate::time::estimate::Estimate;
+use crate::error::Error;
+use crate::numeric::estimate::Estimate;
+use crate::system::System;
+use crate::time::divergence::Divergence;
 use crate::time::stroboscope::Stroboscope;
 use crate::time::{FlowError, Stretch, Tangent};
 
@@ -54,17 +56,10 @@ pub struct Lyapunov<'s> {
     state: Vec<f64>,
     tangent: Tangent,
     sums: Vec<f64>,
-    batches: Vec<Batch>,
-}
-
-/// What one batch of periods gave.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Batch {
-    /// Means (2) per period over the batch.
-    pub exponents: Vec<f64>,
-    /// The mean integral of the divergence; `None` if it was not asked for.
-    pub divergence: Option<Integral>,
+    /// Means (2) per period over each batch.
+    batches: Vec<Vec<f64>>,
+    /// Mean integrals of the divergence over those for which it was asked for.
+    integrals: Vec<Estimate>,
 }
 
 /// Lyapunov exponents.
@@ -73,12 +68,13 @@ pub struct Batch {
 pub struct Exponents {
     /// Largest first, per period of the declaration. NaN for those so far below the largest that neighbours are pressed
     /// together beyond ten decades in one application of the map, as the units of the state measure it: least where `omega` is about
-    /// one; with one coordinate, `divergence` less the largest then.
+    /// one; with one coordinate, `divergence` less the largest then. Their errors are standard errors.
     pub exponents: Vec<Estimate>,
-    /// Their sum, as the determinants of the tangent maps give it (3).
+    /// Their sum, as the determinants of the tangent maps give it (3), with its standard error.
     pub sum: Estimate,
-    /// Their sum, as the divergence gives it.
-    pub divergence: Option<Integral>,
+    /// Their sum, as the divergence gives it; `None` if it was not asked for. Its error is what the integral may be wrong by: rounding, and
+    /// what the nodes do not resolve.
+    pub divergence: Option<Estimate>,
 }
 
 impl<'s> Lyapunov<'s> {
@@ -92,14 +88,22 @@ impl<'s> Lyapunov<'s> {
             tangent: Tangent::of_state(order / 2, None),
             sums: vec![0.0; order],
             batches: Vec::new(),
+            integrals: Vec::new(),
         }
     }
 
-    /// Integrates the divergence as well. It must be that of the system that moves.
-    #[must_use]
-    pub fn divergence(mut self, divergence: Divergence) -> Self {
-        self.divergence = Some(divergence);
-        self
+    /// Integrates the divergence as well. The system must be the one that moves, with the values of its parameters and of `omega`.
+    ///
+    /// # Errors
+    /// If parameters or the frequency are outside their ranges, levels are out of order, or the mass matrix is singular.
+    pub fn divergence(
+        mut self,
+        system: &dyn System,
+        values: &[f64],
+        omega: f64,
+    ) -> Result<Self, Error> {
+        self.divergence = Some(Divergence::new(system, values, omega)?);
+        Ok(self)
     }
 
     /// Applies the map some times: the state settles, and the frame turns to its directions.
@@ -114,21 +118,21 @@ impl<'s> Lyapunov<'s> {
         Ok(())
     }
 
-    /// Adds a batch of so many applications of the map, one or more.
+    /// Adds a batch of so many applications of the map, one or more, and gives its mean exponents, per period of the declaration.
     ///
     /// # Errors
     /// If the motion cannot be continued, or the batch is empty.
-    pub fn batch(&mut self, periods: usize) -> Result<&Batch, FlowError> {
+    pub fn batch(&mut self, periods: usize) -> Result<&[f64], FlowError> {
         if periods == 0 {
             return Err(FlowError::NoPeriods);
         }
         self.sums.fill(0.0);
-        let mut integral = Integral::default();
+        let mut integral = Estimate::default();
         for _ in 0..periods {
             match &mut self.divergence {
                 None => self.map.map_with(&mut self.state, &mut self.tangent)?,
                 Some(divergence) => {
-                    let mut see = |stretch: &dyn Stretch| integral += divergence.over(stretch);
+                    let mut see = |stretch: &dyn Stretch| integral.add(divergence.over(stretch));
                     let tangent = Some(&mut self.tangent);
                     self.map.advance(&mut self.state, tangent, Some(&mut see))?;
                 }
@@ -136,16 +140,16 @@ impl<'s> Lyapunov<'s> {
             orthonormalise(&mut self.tangent.columns, &mut self.sums);
         }
         let count = (periods * self.map.stride()) as f64;
-        let batch = Batch {
-            exponents: self.sums.iter().map(|sum| sum / count).collect(),
-            divergence: self.divergence.as_ref().map(|_| integral / count),
-        };
-        self.batches.push(batch);
+        if self.divergence.is_some() {
+            self.integrals.push(integral.over(count));
+        }
+        self.batches
+            .push(self.sums.iter().map(|sum| sum / count).collect());
         Ok(&self.batches[self.batches.len() - 1])
     }
 
-    /// The batches so far.
-    pub fn batches(&self) -> &[Batch] {
+    /// The mean exponents of each batch so far.
+    pub fn batches(&self) -> &[Vec<f64>] {
         &self.batches
     }
 
@@ -158,7 +162,7 @@ impl<'s> Lyapunov<'s> {
     pub fn exponents(&self) -> Exponents {
         let all = || self.batches.iter();
         let mut exponents: Vec<Estimate> = (0..self.state.len())
-            .map(|i| Estimate::of(all().map(move |batch| batch.exponents[i])))
+            .map(|i| Estimate::of_batches(all().map(move |batch| batch[i])))
             .collect();
         let key = |exponent: &Estimate| {
             if exponent.value.is_nan() {
@@ -168,20 +172,16 @@ impl<'s> Lyapunov<'s> {
             }
         };
         exponents.sort_by(|a, b| key(b).total_cmp(&key(a)));
-        let asked = self
-            .divergence
-            .as_ref()
-            .filter(|_| !self.batches.is_empty());
-        let divergence = asked.and_then(|_| {
-            all().try_fold(Integral::default(), |mut sum, batch| {
-                sum += batch.divergence?;
-                Some(sum)
-            })
-        });
+        let count = self.batches.len();
+        let mut divergence = Estimate::default();
+        for integral in &self.integrals {
+            divergence.add(*integral);
+        }
+        let asked = count > 0 && self.integrals.len() == count;
         Exponents {
             exponents,
-            sum: Estimate::of(all().map(|batch| batch.exponents.iter().sum())),
-            divergence: divergence.map(|sum| sum / self.batches.len() as f64),
+            sum: Estimate::of_batches(all().map(|batch| batch.iter().sum())),
+            divergence: asked.then(|| divergence.over(count as f64)),
         }
     }
 }
@@ -224,9 +224,9 @@ mod tests {
         let model = one_sided(drive);
         let values = [model.zeta, model.load, model.drive];
         let flow = Affine::new(&model, &values, 1.0).expect("affine");
-        let divergence = Divergence::new(&model, &values, 1.0).expect("a mass");
         let mut map = Stroboscope::new(Box::new(flow));
-        let mut lyapunov = Lyapunov::new(&mut map, &state).divergence(divergence);
+        let lyapunov = Lyapunov::new(&mut map, &state);
+        let mut lyapunov = lyapunov.divergence(&model, &values, 1.0).expect("a mass");
         lyapunov.settle(2000).expect("a motion");
         for _ in 0..batches {
             lyapunov.batch(periods).expect("a motion");
@@ -258,9 +258,9 @@ mod tests {
     fn what_is_pressed_into_rounding_is_no_number() {
         let model = Heavy { zeta: 5.0 };
         let flow = Affine::new(&model, &[5.0], 1.0).expect("affine");
-        let divergence = Divergence::new(&model, &[5.0], 1.0).expect("a mass");
         let mut map = Stroboscope::new(Box::new(flow));
-        let mut lyapunov = Lyapunov::new(&mut map, &[0.0, 0.0]).divergence(divergence);
+        let lyapunov = Lyapunov::new(&mut map, &[0.0, 0.0]);
+        let mut lyapunov = lyapunov.divergence(&model, &[5.0], 1.0).expect("a mass");
         lyapunov.settle(20).expect("a motion");
         lyapunov.batch(20).expect("a motion");
         let found = lyapunov.exponents();
@@ -296,8 +296,8 @@ mod tests {
     fn beyond_the_interior_crisis() {
         let found = exponents(1.785, [0.0, 0.0], 40, 5000);
         let largest = found.exponents[0];
-        let error = (largest.standard_error.powi(2) + 0.004_f64.powi(2)).sqrt();
-        assert!(largest.standard_error < 0.01, "{largest}");
+        let error = (largest.error.powi(2) + 0.004_f64.powi(2)).sqrt();
+        assert!(largest.error < 0.01, "{largest}");
         assert!((largest.value - 0.214).abs() < 3.0 * error, "{largest}");
         check_sum(&found);
     }
@@ -309,9 +309,9 @@ mod tests {
         let length = length.map_or(4000, |text| text.parse().expect("a number"));
         let found = exponents(1.78, [-0.35, 0.335], 40, length);
         let largest = found.exponents[0];
-        let error = (largest.standard_error.powi(2) + 0.0005_f64.powi(2)).sqrt();
+        let error = (largest.error.powi(2) + 0.0005_f64.powi(2)).sqrt();
         let most = 0.001 * (20_000.0 / length as f64).sqrt();
-        assert!(largest.standard_error < most, "{largest}");
+        assert!(largest.error < most, "{largest}");
         assert!((largest.value - 0.0129).abs() < 3.0 * error, "{largest}");
         check_sum(&found);
     }

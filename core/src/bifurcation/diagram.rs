@@ -11,7 +11,7 @@ use std::time::Duration;
 use super::cover::Searched;
 use super::matching;
 use crate::branches::branch::Branch;
-use crate::branches::error::{Attempts, OrbitError};
+use crate::branches::error::Attempts;
 use crate::branches::point::Event;
 use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::Stop;
@@ -373,13 +373,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         let request = request.period(period).near_state(&states[0]);
         let orbit = request.orbit(value)?;
         if !matching::passes(&orbit, states) {
-            let attempts = Attempts::default();
-            return Err(OrbitError::NoSuchPeriod {
-                period,
-                value,
-                attempts,
-            }
-            .into());
+            return Err(Attempts::default().without_period(period, value).into());
         }
         // Each of two parts may have half.
         let request = request

@@ -1,13 +1,12 @@
 //! Why there is no diagram, or no backbone curve.
 
 use crate::attractors::basin::BasinError;
-use crate::error::ErrorKind;
+use crate::error::{Error, ErrorKind};
 use crate::numeric::decimal::Decimal;
 
 /// Why there is no diagram, or no backbone curve.
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum BifurcationError {
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum BifurcationError {
     /// A motion that begins at rest does not come to rest again.
     #[error("the motion from rest at {position} does not come to rest again")]
     NeverAtRest {
@@ -51,14 +50,10 @@ pub enum BifurcationError {
     },
 }
 
-crate::error::room_error! {
-    BifurcationError, BifurcationError::kind;
-    NeverAtRest { position }
-    NotFree { apart }
-    NoLoad {}
-    NoResonance { value, between }
-    Search { value, reason }
-    ;
+impl From<BifurcationError> for Error {
+    fn from(error: BifurcationError) -> Self {
+        Self::new(error.kind(), error)
+    }
 }
 
 impl BifurcationError {

@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 
 use crate::attractors::basin::{Fate, Finder};
 use crate::attractors::lyapunov::Lyapunov;
+use crate::numeric::estimate::Estimate;
 use crate::time::FlowError;
-use crate::time::estimate::Estimate;
 use crate::time::stroboscope::Stroboscope;
 
 /// The first return that is tried, relative to the size of motions, and the nearest.
@@ -194,10 +194,10 @@ impl Motions {
                 Err(_) => return Fate::Failed,
             }
         }
-        let means = lyapunov.batches().iter().map(|batch| batch.exponents[0]);
-        let largest = Estimate::of(means);
+        let means = lyapunov.batches().iter().map(|batch| batch[0]);
+        let largest = Estimate::of_batches(means);
         let parts = largest.value * (BATCHES * BATCH) as f64 > 1.0;
-        if parts && largest.value > 3.0 * largest.standard_error {
+        if parts && largest.value > 3.0 * largest.error {
             Fate::Chaotic
         } else {
             Fate::Long

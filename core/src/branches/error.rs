@@ -38,16 +38,23 @@ pub enum OrbitError {
     },
     /// Orbits were found, but none whose shortest period is the one asked for.
     #[error(
-        "no orbit of period {period} found at {}: {attempts}; start where there is one, and follow it from there",
-        Decimal::plain(*.value)
+        "no orbit of period {period} found at {}: {}; start where there is one, and follow it from there",
+        Decimal::plain(*.value),
+        attempts_said(*.planned, *.made, *.shorter, *.evaluations)
     )]
     NoSuchPeriod {
         /// The period asked for, in periods of the declaration.
         period: usize,
         /// Where.
         value: f64,
-        /// What the attempts to find one came to.
-        attempts: Attempts,
+        /// Attempts: as many as there are disturbances to begin with.
+        planned: usize,
+        /// Attempts that were made: fewer if they took the work that a search is allowed.
+        made: usize,
+        /// Those that led to an orbit of a shorter period.
+        shorter: usize,
+        /// Evaluations of the balance.
+        evaluations: usize,
     },
     /// There is no orbit: the branch that comes near turns back before.
     #[error(
@@ -97,7 +104,7 @@ crate::error::room_error! {
     OrbitError, OrbitError::kind;
     NoStart { value, reason }
     SearchLimit { value, evaluations, multiplications, reason }
-    NoSuchPeriod { period, value, attempts }
+    NoSuchPeriod { period, value, planned, made, shorter, evaluations }
     Beyond { value, fold }
     Lost { value, from, to }
     NoBranch { kind, value }
@@ -114,19 +121,13 @@ impl OrbitError {
             shorter: 1,
             evaluations: 0,
         };
-        Self::NoSuchPeriod {
-            period,
-            value,
-            attempts,
-        }
+        attempts.without_period(period, value)
     }
 
     fn kind(&self) -> ErrorKind {
         match self {
             Self::SearchLimit { .. } => ErrorKind::Limit,
-            Self::NoSuchPeriod { attempts, .. } if attempts.made < attempts.planned => {
-                ErrorKind::Limit
-            }
+            Self::NoSuchPeriod { planned, made, .. } if made < planned => ErrorKind::Limit,
             Self::Cancelled { .. } => ErrorKind::Cancelled,
             _ => ErrorKind::NoOrbit,
         }
@@ -145,37 +146,39 @@ pub(crate) fn unless_cancelled(cancel: &Cancel, value: f64, error: Error) -> Err
 
 /// What attempts to find an orbit of a longer period came to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Attempts {
+pub(crate) struct Attempts {
     /// As many as there are disturbances to begin with.
-    pub planned: usize,
+    pub(crate) planned: usize,
     /// Fewer if they took the work that a search is allowed.
-    pub made: usize,
+    pub(crate) made: usize,
     /// Those that led to an orbit of a shorter period.
-    pub shorter: usize,
+    pub(crate) shorter: usize,
     /// Evaluations of the balance.
-    pub evaluations: usize,
+    pub(crate) evaluations: usize,
 }
 
-impl std::fmt::Display for Attempts {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self {
-            planned,
-            made,
-            shorter,
-            evaluations,
-        } = self;
-        if made < planned {
-            write!(
-                f,
-                "a search may take no more work after {made} of {planned} attempts and {evaluations} evaluations of the balance; {shorter}"
-            )?;
-        } else {
-            write!(f, "{shorter} of {made} attempts")?;
+impl Attempts {
+    /// None of them led to an orbit of this period.
+    pub(crate) fn without_period(self, period: usize, value: f64) -> OrbitError {
+        OrbitError::NoSuchPeriod {
+            period,
+            value,
+            planned: self.planned,
+            made: self.made,
+            shorter: self.shorter,
+            evaluations: self.evaluations,
         }
-        write!(
-            f,
-            " led to an orbit of a shorter period, the others to none"
-        )
     }
+}
+
+/// What attempts came to, in words.
+fn attempts_said(planned: usize, made: usize, shorter: usize, evaluations: usize) -> String {
+    let of_them = if made < planned {
+        format!(
+            "a search may take no more work after {made} of {planned} attempts and {evaluations} evaluations of the balance; {shorter}"
+        )
+    } else {
+        format!("{shorter} of {made} attempts")
+    };
+    format!("{of_them} led to an orbit of a shorter period, the others to none")
 }

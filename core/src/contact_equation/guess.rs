@@ -10,7 +10,7 @@ use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::error::Error;
 use crate::time::MotionError;
-use crate::time::history::{self, Span};
+use crate::time::history;
 use crate::time::stroboscope::Stroboscope;
 
 /// Samples in a period of the declaration.
@@ -46,13 +46,10 @@ impl<'g> Guess<'g> {
         flow.set(asked.variable, point.value).map_err(failed)?;
         let mut samples = Vec::new();
         let mut state = point.orbit.state();
-        let span = Span {
-            periods: point.orbit.period,
-            samples: SAMPLES,
-        };
+        let periods = point.orbit.period;
         let mut keep = |_: f64, state: &[f64]| samples.extend_from_slice(state);
         let mut map = Stroboscope::new(flow);
-        history::record(&mut map, &mut state, span, &mut keep).map_err(failed)?;
+        history::record(&mut map, &mut state, periods, SAMPLES, &mut keep).map_err(failed)?;
         Ok(Self { point, samples })
     }
 

@@ -134,6 +134,7 @@ mod tests {
             must: "must be finite",
         };
         let structure = StructureError::SingularMass { pivot: 0.0 };
+        let [log, basin] = [Error::from(log), Error::from(basin)];
         let sentences: [(&dyn std::fmt::Debug, &dyn std::fmt::Display); 4] = [
             (&flow, &flow),
             (&log, &log),

@@ -1,7 +1,5 @@
 //! What is unusual about a system and may be meant: nothing is refused for it, but a slip of the pen looks the same.
 
-use std::fmt;
-
 use nalgebra::DMatrix;
 
 use crate::model::layout::{Layout, constant};
@@ -11,43 +9,10 @@ use crate::system::System;
 /// Entries that differ by less, relative to the largest, are equal.
 const EQUAL: f64 = 1e-12;
 
-/// Something unusual about a system at values of its parameters.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum Remark {
-    /// Nothing in the equations depends on time: every periodic orbit of the excitation's frequency that is found is likely at rest.
-    NoExcitation,
-    /// A matrix that is symmetric for forces with an energy is not.
-    Unsymmetric {
-        /// `mass` or `stiffness`.
-        matrix: &'static str,
-        /// The two coordinates whose entries differ most.
-        coordinates: [String; 2],
-        /// The entry in the equation of the first, for the second coordinate, and the other way round.
-        entries: [f64; 2],
-    },
-}
-
-impl fmt::Display for Remark {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoExcitation => write!(
-                f,
-                "nothing in the equations depends on time: there is no excitation"
-            ),
-            Self::Unsymmetric {
-                matrix,
-                coordinates: [a, b],
-                entries: [ab, ba],
-            } => write!(
-                f,
-                "the {matrix} matrix is not symmetric: {ab:e} of {b} in the equation of {a}, {ba:e} of {a} in that of {b}"
-            ),
-        }
-    }
-}
-
-/// What is unusual about a system at the present values of its parameters and an excitation frequency.
+/// What is unusual about a system at the present values of its parameters and an excitation frequency, each in a sentence.
+///
+/// That nothing in the equations depends on time: every periodic orbit of the excitation's frequency that is found is likely at rest. That
+/// the mass or the stiffness matrix, which is symmetric for forces with an energy, is not, with the two entries that differ most.
 ///
 /// ```
 /// hertzian::oscillator! {
@@ -59,11 +24,11 @@ impl fmt::Display for Remark {
 ///
 /// let remarks = hertzian::remarks::of(&Slip {}, 1.0);
 /// assert_eq!(
-///     remarks[0].to_string(),
+///     remarks[0],
 ///     "the stiffness matrix is not symmetric: -1e0 of y in the equation of x, 1e0 of x in that of y"
 /// );
 /// ```
-pub fn of(system: &dyn System, omega: f64) -> Vec<Remark> {
+pub fn of(system: &dyn System, omega: f64) -> Vec<String> {
     let layout = Layout::of(system);
     let facts = system.facts();
     let parameters = values(system);
@@ -71,17 +36,17 @@ pub fn of(system: &dyn System, omega: f64) -> Vec<Remark> {
     system.coefficients(&parameters, omega, &mut coefficients);
     let mut remarks = Vec::new();
     if !is_excited(&layout, &coefficients) {
-        remarks.push(Remark::NoExcitation);
+        remarks.push("nothing in the equations depends on time: there is no excitation".to_owned());
     }
     for (matrix, entries) in [("mass", &layout.mass), ("stiffness", &layout.stiffness)] {
         let matrix_of = constant(entries, &coefficients, layout.coordinates);
-        remarks.extend(
-            unsymmetric(&matrix_of).map(|(row, column)| Remark::Unsymmetric {
-                matrix,
-                coordinates: [row, column].map(|at| facts.coordinates[at].to_string()),
-                entries: [matrix_of[(row, column)], matrix_of[(column, row)]],
-            }),
-        );
+        remarks.extend(unsymmetric(&matrix_of).map(|(row, column)| {
+            let [a, b] = [row, column].map(|at| &facts.coordinates[at]);
+            let [ab, ba] = [matrix_of[(row, column)], matrix_of[(column, row)]];
+            format!(
+                "the {matrix} matrix is not symmetric: {ab:e} of {b} in the equation of {a}, {ba:e} of {a} in that of {b}"
+            )
+        }));
     }
     remarks
 }
@@ -135,7 +100,7 @@ mod tests {
             drive: 0.1,
             coupling: 1.0,
         };
-        assert_eq!(of(&usual, 1.0), []);
+        assert!(of(&usual, 1.0).is_empty());
     }
 
     #[test]
@@ -144,7 +109,10 @@ mod tests {
             drive: 0.0,
             coupling: 1.0,
         };
-        assert_eq!(of(&free, 1.0), [Remark::NoExcitation]);
+        assert_eq!(
+            of(&free, 1.0),
+            ["nothing in the equations depends on time: there is no excitation"]
+        );
     }
 
     #[test]
@@ -153,11 +121,7 @@ mod tests {
             drive: 0.1,
             coupling: -1.0,
         };
-        let expected = Remark::Unsymmetric {
-            matrix: "stiffness",
-            coordinates: ["x".to_owned(), "y".to_owned()],
-            entries: [-1.0, 1.0],
-        };
+        let expected = "the stiffness matrix is not symmetric: -1e0 of y in the equation of x, 1e0 of x in that of y";
         assert_eq!(of(&slip, 1.0), [expected]);
     }
 }

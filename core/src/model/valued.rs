@@ -1,14 +1,16 @@
-//! A system at values of its parameters that are not its own.
+//! A system that another one stands behind: with other values of its parameters, or with other laws.
 
+use std::fmt;
 use std::sync::Arc;
 
 use crate::law::Law;
 use crate::system::{System, SystemFacts, Variable};
 
-/// A system whose parameters have other values: for whoever has a system of a type that is not known, and not its fields.
+/// A system at other values of its parameters, in the order of its declaration: for whoever has a system of a type that is not known, and not
+/// its fields. Values that are missing are not numbers, which requests refuse, and further ones are left out.
 ///
 /// ```
-/// use hertzian::{FrequencyResponse, System, Valued};
+/// use hertzian::{FrequencyResponse, with_values};
 ///
 /// hertzian::oscillator! {
 ///     Linear(x) {
@@ -17,39 +19,57 @@ use crate::system::{System, SystemFacts, Variable};
 ///     }
 /// }
 ///
-/// let model = Linear::default().shared();
-/// let (one, two) = (FrequencyResponse::of(&model), FrequencyResponse::of(&Valued::new(&model, vec![2.0])));
+/// let model = Linear::default();
+/// let (one, two) = (FrequencyResponse::of(&model), FrequencyResponse::of(&with_values(&model, vec![2.0])));
 /// let ratio = two.orbit(1.0)?.peak_to_peak() / one.orbit(1.0)?.peak_to_peak();
 /// assert!((ratio - 2.0).abs() < 1e-12);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
-#[derive(Debug, Clone)]
-pub struct Valued {
-    system: Arc<dyn System>,
-    values: Vec<f64>,
+pub fn with_values(system: &dyn System, mut values: Vec<f64>) -> Arc<dyn System> {
+    values.resize(system.facts().parameters.len(), f64::NAN);
+    Arc::new(Other {
+        system: system.shared(),
+        values: Some(values),
+        laws: Arc::default(),
+    })
 }
 
-impl Valued {
-    /// A system with as many values as it has parameters, in the order of its declaration. Values that are missing are not numbers, which
-    /// requests refuse, and further ones are left out.
-    pub fn new(system: &Arc<dyn System>, values: Vec<f64>) -> Self {
-        let mut values = values;
-        values.resize(system.facts().parameters.len(), f64::NAN);
-        Self {
-            system: Arc::clone(system),
-            values,
-        }
+/// A system with other laws, in the order of its own, which stay where there is `None`.
+pub(crate) fn with_laws(system: &dyn System, laws: Vec<Option<Box<dyn Law>>>) -> Arc<dyn System> {
+    Arc::new(Other {
+        system: system.shared(),
+        values: None,
+        laws: laws.into(),
+    })
+}
+
+/// All but these values and laws is the system's own.
+#[derive(Clone)]
+struct Other {
+    system: Arc<dyn System>,
+    values: Option<Vec<f64>>,
+    laws: Arc<[Option<Box<dyn Law>>]>,
+}
+
+impl fmt::Debug for Other {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Other")
+            .field("system", &self.system)
+            .field("values", &self.values)
+            .finish_non_exhaustive()
     }
 }
 
-// All but the values is the system's own; another wrapper, which interprets its laws, says so in the same words.
-impl System for Valued {
+impl System for Other {
     fn facts(&self) -> &SystemFacts {
         self.system.facts()
     }
 
     fn values(&self, values: &mut [f64]) {
-        values.copy_from_slice(&self.values);
+        match &self.values {
+            Some(own) => values.copy_from_slice(own),
+            None => self.system.values(values),
+        }
     }
 
     fn coefficients(&self, parameters: &[f64], omega: f64, coefficients: &mut [f64]) {
@@ -68,7 +88,10 @@ impl System for Valued {
     }
 
     fn law(&self, index: usize) -> &dyn Law {
-        self.system.law(index)
+        match self.laws.get(index) {
+            Some(Some(law)) => law.as_ref(),
+            _ => self.system.law(index),
+        }
     }
 
     fn shared(&self) -> Arc<dyn System> {

@@ -11,51 +11,71 @@ const ROUNDED: std::ops::Range<f64> = 1e-3..1e6;
 const FEWEST: f64 = 2.0;
 const MOST: f64 = 15.0;
 
+/// A number to be printed, with all digits that tell it from other numbers.
+///
+/// ```
+/// use hertzian::export;
+///
+/// assert_eq!(export::plain(0.25).to_string(), "0.25");
+/// assert_eq!(export::plain(1e-300).to_string(), "1e-300");
+/// ```
+pub fn plain(value: f64) -> impl fmt::Display + Copy {
+    Decimal::plain(value)
+}
+
+/// A number to be printed, with so many decimals, of itself or of its power of ten.
+///
+/// ```
+/// use hertzian::export;
+///
+/// assert_eq!(export::rounded(0.715119549676, 9).to_string(), "0.715119550");
+/// assert_eq!(export::rounded(2.5e-8, 3).to_string(), "2.500e-8");
+/// ```
+pub fn rounded(value: f64, decimals: usize) -> impl fmt::Display + Copy {
+    Decimal::rounded(value, decimals)
+}
+
+/// A number to be printed, with as many digits as an error bears: the first that it changes is the last. Nothing is known of a number whose
+/// error is not finite, and it has three digits; without an error it has all.
+///
+/// ```
+/// use hertzian::export;
+///
+/// assert_eq!(export::to_error(0.715119549676, 2e-7).to_string(), "0.7151195");
+/// assert_eq!(export::to_error(1234.5678, 20.0).to_string(), "1235");
+/// assert_eq!(export::to_error(2.54321e-8, 3e-11).to_string(), "2.543e-8");
+/// assert_eq!(export::to_error(2.54321, f64::INFINITY).to_string(), "2.54");
+/// ```
+pub fn to_error(value: f64, error: f64) -> impl fmt::Display + Copy {
+    Decimal::to_error(value, error)
+}
+
 /// A number to be printed.
-///
-/// ```
-/// use hertzian::export::Decimal;
-///
-/// assert_eq!(Decimal::plain(0.25).to_string(), "0.25");
-/// assert_eq!(Decimal::plain(1e-300).to_string(), "1e-300");
-/// assert_eq!(Decimal::rounded(0.715119549676, 9).to_string(), "0.715119550");
-/// assert_eq!(Decimal::rounded(2.5e-8, 3).to_string(), "2.500e-8");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Decimal {
+pub(crate) struct Decimal {
     value: f64,
     decimals: Option<usize>,
 }
 
 impl Decimal {
-    /// With all digits that tell it from other numbers.
-    pub const fn plain(value: f64) -> Self {
+    /// See [`plain`].
+    pub(crate) const fn plain(value: f64) -> Self {
         Self {
             value,
             decimals: None,
         }
     }
 
-    /// With so many decimals, of itself or of its power of ten.
-    pub const fn rounded(value: f64, decimals: usize) -> Self {
+    /// See [`rounded`].
+    pub(crate) const fn rounded(value: f64, decimals: usize) -> Self {
         Self {
             value,
             decimals: Some(decimals),
         }
     }
 
-    /// With as many digits as an error bears: the first that it changes is the last. Nothing is known of a number whose error is not
-    /// finite, and it has three digits; without an error it has all.
-    ///
-    /// ```
-    /// use hertzian::export::Decimal;
-    ///
-    /// assert_eq!(Decimal::to_error(0.715119549676, 2e-7).to_string(), "0.7151195");
-    /// assert_eq!(Decimal::to_error(1234.5678, 20.0).to_string(), "1235");
-    /// assert_eq!(Decimal::to_error(2.54321e-8, 3e-11).to_string(), "2.543e-8");
-    /// assert_eq!(Decimal::to_error(2.54321, f64::INFINITY).to_string(), "2.54");
-    /// ```
-    pub fn to_error(value: f64, error: f64) -> Self {
+    /// See [`to_error`].
+    pub(crate) fn to_error(value: f64, error: f64) -> Self {
         if !value.is_finite() || value == 0.0 || error == 0.0 {
             return Self::plain(value);
         }

@@ -1,6 +1,7 @@
 //! What is computed without knowing a model: dense equations, powers, series, small eigenvalues.
 
 pub(crate) mod decimal;
+pub(crate) mod estimate;
 pub(crate) mod exponential;
 pub mod fourier;
 pub(crate) mod golden;

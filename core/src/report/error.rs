@@ -3,15 +3,14 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::error::ErrorKind;
+use crate::error::{Error, ErrorKind};
 #[cfg(feature = "plot")]
 use crate::numeric::decimal::Decimal;
 
 /// Why there is no chart of what was asked for.
 #[cfg(feature = "plot")]
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ViewError {
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum ViewError {
     /// A value has no place on a logarithmic axis.
     #[error(
         "{name} is {} at {varied} = {}, which has no place on a logarithmic axis or one of decibels: take a linear one",
@@ -72,15 +71,10 @@ pub enum ViewError {
 }
 
 #[cfg(feature = "plot")]
-crate::error::room_error! {
-    ViewError, |_| ErrorKind::Request;
-    NotPositive { name, value, varied, at }
-    Angle { name, harmonic }
-    NoAmplitude { name, count, measure }
-    OtherAxis { branch, expected, found }
-    Waterfall { harmonics }
-    Empty { branches }
-    ;
+impl From<ViewError> for Error {
+    fn from(error: ViewError) -> Self {
+        Self::new(ErrorKind::Request, error)
+    }
 }
 
 /// Why a result is not in its file, or cannot be had from it.

@@ -16,7 +16,7 @@ use crate::report::picture::plain;
 use crate::report::prefix::with_unit;
 use crate::report::unit::with;
 use crate::report::view::View;
-use crate::sensitivity::{Sensitivities, Uncertain, Uncertainty};
+use crate::sensitivity::{Sensitivities, Uncertain};
 
 /// What is taken where nothing is said of uncertainties: of every parameter a hundredth.
 const USUAL: f64 = 0.01;
@@ -122,7 +122,8 @@ impl Branch {
         let others = parameters.filter(|parameter| parameter.name != self.varied);
         let usual = others.map(|parameter| Uncertain {
             name: parameter.name.clone(),
-            size: Uncertainty::Relative(USUAL),
+            size: USUAL,
+            is_relative: true,
         });
         usual.collect()
     }
@@ -133,11 +134,10 @@ impl Branch {
         let parameter = parameters.find(|parameter| parameter.name == own.name);
         let unit = parameter.map_or("", |parameter| parameter.unit.as_str());
         let (name, size) = (&own.name, in_words(own));
-        match own.size {
-            Uncertainty::Absolute(_) if !unit.is_empty() => {
-                format!("{name} = ({} ± {size}) {unit}", Decimal::plain(value))
-            }
-            _ => format!("{name} = {} ± {size}", with_unit(value, unit)),
+        if own.is_relative || unit.is_empty() {
+            format!("{name} = {} ± {size}", with_unit(value, unit))
+        } else {
+            format!("{name} = ({} ± {size}) {unit}", Decimal::plain(value))
         }
     }
 
@@ -167,7 +167,7 @@ fn significant(value: f64) -> Decimal {
 
 /// How large an uncertainty is: `5 %`.
 fn in_words(own: &Uncertain) -> String {
-    own.size.to_string().replace('%', " %")
+    own.written_size().replace('%', " %")
 }
 
 /// Where a variable stands.

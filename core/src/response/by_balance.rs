@@ -18,7 +18,7 @@ use crate::balance_branch::run::{Followed, Rest, Run};
 use crate::balance_branch::switch::switch_branch;
 use crate::branches::branch::{Branch, Further};
 use crate::branches::engine::Places;
-use crate::branches::error::{Attempts, OrbitError};
+use crate::branches::error::Attempts;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::request::{Guess, Request};
@@ -47,13 +47,9 @@ impl Follow for HarmonicBalance {
             ..request.clone()
         };
         let branch = self.run(&request, &mut |_| ControlFlow::Break(()))?;
-        let none = OrbitError::NoSuchPeriod {
-            period: request.period(),
-            value,
-            attempts: Attempts::default(),
-        };
+        let none = || Attempts::default().without_period(request.period(), value);
         let first = branch.points.into_iter().next();
-        first.ok_or_else(|| none.into())
+        first.ok_or_else(|| none().into())
     }
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {

@@ -1,13 +1,12 @@
 //! Why there are no derivatives.
 
-use crate::error::ErrorKind;
+use crate::error::{Error, ErrorKind};
 use crate::event::EventKind;
 use crate::time::FlowError;
 
 /// Why there are no derivatives of an orbit or of an event.
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SensitivityError {
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum SensitivityError {
     /// The place of such an event is that of another one, or none at other values of the parameters.
     #[error(
         "the place of a {kind} has no derivative here: it is that of a doubling or a broken symmetry of the branch that is met, which has, or a change of a parameter parts the branches"
@@ -74,17 +73,8 @@ impl SensitivityError {
     }
 }
 
-crate::error::room_error! {
-    SensitivityError, SensitivityError::kind;
-    Kind { kind }
-    Singular {}
-    Diverged { left }
-    NoFold { moved }
-    NoCrossing {}
-    Repeated {}
-    Beside {}
-    NoTouch {}
-    Uncertainty { text }
-    ;
-    Motion
+impl From<SensitivityError> for Error {
+    fn from(error: SensitivityError) -> Self {
+        Self::new(error.kind(), error)
+    }
 }

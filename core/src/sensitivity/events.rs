@@ -18,10 +18,11 @@ use super::orbit::{
 };
 use super::place::{self, Moving};
 use super::rows::Row;
-use super::{Derivative, Measured, Missing, Sensitivities};
+use super::{Measured, Missing, Sensitivities};
 use crate::branches::point::Event;
 use crate::error::{Error, ErrorKind};
 use crate::event::EventKind;
+use crate::numeric::estimate::Estimate;
 use crate::system::Variable;
 
 impl Sensitive<'_> {
@@ -113,12 +114,12 @@ impl Sensitive<'_> {
     }
 
     /// Derivatives of a place by all variables, as two flows have it: none by what is varied.
-    fn placed(&self, Found { fine, beside }: &Found) -> Vec<Option<Derivative>> {
+    fn placed(&self, Found { fine, beside }: &Found) -> Vec<Option<Estimate>> {
         let both = fine.by.iter().zip(&fine.errors).enumerate();
         let mut known = both.map(|(index, (&value, own))| {
             let beside = beside.as_ref().map(|beside| beside.by[index]);
             let apart = beside.map_or(f64::INFINITY, |beside| (value - beside).abs());
-            Derivative {
+            Estimate {
                 value,
                 error: finite(apart + own + ROUNDINGS * f64::EPSILON * value.abs()),
             }
@@ -149,11 +150,12 @@ impl Sensitive<'_> {
         }
         let own = (self.variables.iter()).position(|variable| *variable == self.varied);
         let moved = at.measured.iter().map(|row| {
-            let along = own.map_or(Derivative::NONE, |own| row.by[own]);
-            let by =
-                row.by.iter().zip(&told.place).map(|(by, place)| {
-                    place.map_or(Derivative::NONE, |place| by.with(along, place))
-                });
+            let along = own.map_or(Estimate::NONE, |own| row.by[own]);
+            let by = row
+                .by
+                .iter()
+                .zip(&told.place)
+                .map(|(by, place)| place.map_or(Estimate::NONE, |place| by.with(along, place)));
             Measured {
                 by: by.collect(),
                 ..row.clone()
@@ -239,12 +241,12 @@ fn moved(slope: &Slope, bends: &critical::Bends) -> (Slope, Vec<f64>) {
 }
 
 /// A derivative that is a number.
-fn known(place: Option<Derivative>) -> Option<Derivative> {
+fn known(place: Option<Estimate>) -> Option<Estimate> {
     place.filter(|place| !place.value.is_nan())
 }
 
 impl Sensitivities {
-    fn add_moving(&mut self, row: &Row, value: f64, by: Vec<Derivative>) {
+    fn add_moving(&mut self, row: &Row, value: f64, by: Vec<Estimate>) {
         let moving = self.known(row, value, by);
         self.moving.extend(moving);
     }
@@ -278,7 +280,7 @@ impl Sensitivities {
     }
 }
 
-impl Derivative {
+impl Estimate {
     /// By what nothing depends on.
     const NONE: Self = Self {
         value: 0.0,

@@ -25,24 +25,10 @@ mod scan;
 mod slopes;
 mod uncertain;
 
-pub use error::SensitivityError;
-pub use uncertain::{Uncertain, Uncertainty};
+pub use uncertain::Uncertain;
 
 use crate::event::EventKind;
-
-/// A derivative with its error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct Derivative {
-    /// Its value.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub value: f64,
-    /// Estimated error: how much another tolerance of the flow and other nodes change it, and roundings times the condition of the orbit's
-    /// equations. Infinite where it was not asked for.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub error: f64,
-}
+use crate::numeric::estimate::Estimate;
 
 /// What is read off an orbit, with its derivatives.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,8 +43,9 @@ pub struct Measured {
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub value: f64,
     /// Its derivative by each of [`Sensitivities::variables`], all others fixed; not a number by one for which it has another derivative to each
-    /// side, which [`Sensitivities::missing`] says.
-    pub by: Vec<Derivative>,
+    /// side, which [`Sensitivities::missing`] says. Its error is how much another tolerance of the flow and other nodes change it, and
+    /// roundings times the condition of the orbit's equations; infinite where it was not asked for.
+    pub by: Vec<Estimate>,
 }
 
 /// Derivatives at an orbit or at an event.
@@ -77,7 +64,7 @@ pub struct Sensitivities {
     pub kind: Option<EventKind>,
     /// Derivatives of the place of an event, a value of what is varied, by each of the variables: none by that itself, and none of a broken
     /// symmetry by what breaks it (`missing` says so). Empty of any other orbit.
-    pub place: Vec<Option<Derivative>>,
+    pub place: Vec<Option<Estimate>>,
     /// What is read off the orbit, at a fixed value of what is varied, multipliers as `multiplier_1_re` and `multiplier_1_im`, largest
     /// modulus first. Empty at a fold: there these derivatives are unbounded, as the inverse of the distance along the branch.
     pub measured: Vec<Measured>,
@@ -114,23 +101,23 @@ impl Missing {
 
 impl Sensitivities {
     /// The derivative of what is read off by a variable, by their names; `None` where there is none of that name.
-    pub fn of(&self, name: &str, variable: &str) -> Option<Derivative> {
+    pub fn of(&self, name: &str, variable: &str) -> Option<Estimate> {
         self.by(&self.measured, name, variable)
     }
 
     /// The derivative of what is read off at an event as the event moves, by their names; `None` where there is none of that name.
-    pub fn of_moving(&self, name: &str, variable: &str) -> Option<Derivative> {
+    pub fn of_moving(&self, name: &str, variable: &str) -> Option<Estimate> {
         self.by(&self.moving, name, variable)
     }
 
-    fn by(&self, rows: &[Measured], name: &str, variable: &str) -> Option<Derivative> {
+    fn by(&self, rows: &[Measured], name: &str, variable: &str) -> Option<Estimate> {
         let index = self.variables.iter().position(|own| own == variable)?;
         let row = rows.iter().find(|row| row.name == name)?;
         row.by.get(index).copied()
     }
 
     /// The derivative of the place of an event by a variable, by its name.
-    pub fn of_place(&self, variable: &str) -> Option<Derivative> {
+    pub fn of_place(&self, variable: &str) -> Option<Estimate> {
         let index = self.variables.iter().position(|own| own == variable)?;
         self.place.get(index).copied().flatten()
     }

@@ -19,7 +19,8 @@ use super::cycle::Cycle;
 use super::error::SensitivityError;
 use super::orbit::finite;
 use super::reader::Along;
-use super::{Derivative, Measured, Missing, Sensitivities};
+use super::{Measured, Missing, Sensitivities};
+use crate::numeric::estimate::Estimate;
 use crate::numeric::spectrum::ITERATIONS;
 use crate::numeric::triangular::eigenvectors;
 
@@ -252,7 +253,7 @@ pub(super) fn add(
             let of = |value: Complex<f64>| if part == "re" { value.re } else { value.im };
             // A simple real multiplier stays real.
             let is_real = part == "im" && multiplier.value.im == 0.0;
-            let by = slopes.iter().map(|&(value, error)| Derivative {
+            let by = slopes.iter().map(|&(value, error)| Estimate {
                 value: of(value),
                 error: if is_real { 0.0 } else { error },
             });

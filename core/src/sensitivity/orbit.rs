@@ -15,12 +15,13 @@ use super::places::Places;
 use super::reader::{Along, Reader};
 use super::rows::{Row, needs};
 use super::slopes::{Asked, Slopes};
-use super::{Derivative, Measured, Missing, Sensitivities, multipliers};
+use super::{Measured, Missing, Sensitivities, multipliers};
 use crate::branches::branch::{Branch, Model};
 use crate::branches::point::Point;
 use crate::cancel::Cancel;
 use crate::error::{Error, ErrorKind};
 use crate::model::request::RequestError;
+use crate::numeric::estimate::Estimate;
 use crate::orbit::observe::Measure;
 use crate::system::{System, Variable};
 
@@ -194,7 +195,7 @@ impl<'p> Sensitive<'p> {
         let read = self.read(&mut cycle, &start, rows, QUICK.1, vanishes)?;
         let mut told = self.told(read.condition);
         for (row, slope) in rows.iter().zip(read.slopes) {
-            let by = slope.by.into_iter().map(|value| Derivative {
+            let by = slope.by.into_iter().map(|value| Estimate {
                 value,
                 error: f64::INFINITY,
             });
@@ -397,14 +398,14 @@ impl<'p> Sensitive<'p> {
 
 impl Sensitivities {
     /// Adds what was read off.
-    pub(super) fn add(&mut self, row: &Row, value: f64, by: Vec<Derivative>) {
+    pub(super) fn add(&mut self, row: &Row, value: f64, by: Vec<Estimate>) {
         let measured = self.known(row, value, by);
         self.measured.extend(measured);
     }
 
     /// What was read off. An amplitude that vanishes has no derivative, nor has its phase, nor an extreme of what is at rest; and one that is another
     /// one to each side is none: that is said.
-    pub(super) fn known(&mut self, row: &Row, value: f64, by: Vec<Derivative>) -> Option<Measured> {
+    pub(super) fn known(&mut self, row: &Row, value: f64, by: Vec<Estimate>) -> Option<Measured> {
         if value.is_nan() {
             let why = "it is of a motion that vanishes, where it has no derivative";
             self.missing.push(Missing::new(&row.name, why));
@@ -425,11 +426,11 @@ impl Sensitivities {
 }
 
 /// Derivatives by two flows: the fine ones, with errors told by the coarse ones, if there are any.
-pub(super) fn apart(fine: &Slope, coarse: Option<&Slope>, rounding: f64) -> Vec<Derivative> {
+pub(super) fn apart(fine: &Slope, coarse: Option<&Slope>, rounding: f64) -> Vec<Estimate> {
     let largest = fine.by.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let by = fine.by.iter().enumerate().map(|(index, &value)| {
         let apart = coarse.map_or(f64::INFINITY, |coarse| (value - coarse.by[index]).abs());
-        Derivative {
+        Estimate {
             value,
             error: finite(apart + rounding * (value.abs() + f64::EPSILON * largest)),
         }

@@ -19,7 +19,6 @@ use crate::numeric::fourier::series;
 use crate::orbit::observe::Observer;
 use crate::time::MotionError;
 use crate::time::history;
-use crate::time::history::Span;
 use crate::time::signals::Asked;
 use crate::time::stroboscope::Stroboscope;
 
@@ -148,10 +147,7 @@ fn sampled(problem: &ShootingProblem, point: &Point, each: usize) -> Result<Vec<
     };
     let mut map = Stroboscope::new(flow);
     let mut state = point.orbit.state();
-    let span = Span {
-        periods: point.orbit.period,
-        samples: each,
-    };
-    history::record(&mut map, &mut state, span, &mut keep).map_err(motion)?;
+    let periods = point.orbit.period;
+    history::record(&mut map, &mut state, periods, each, &mut keep).map_err(motion)?;
     Ok(samples)
 }

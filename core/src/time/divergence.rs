@@ -31,6 +31,7 @@ use crate::laws::single::Single;
 use crate::model::error::ModelError;
 use crate::model::layout::{ContactLayout, Layout, Term};
 use crate::model::validate;
+use crate::numeric::estimate::Estimate;
 use crate::numeric::fourier::grading;
 use crate::numeric::fourier::grading::Grading;
 use crate::system::System;
@@ -44,36 +45,9 @@ const ENOUGH: f64 = 1e-13;
 const MOST_PANELS: usize = 2000;
 const MOST_HALVINGS: i32 = 50;
 
-/// An integral, and an estimate of its error.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Integral {
-    /// The integral.
-    pub value: f64,
-    /// What it may be wrong by: rounding, and what the nodes do not resolve. That of the motion itself is not in it.
-    pub error: f64,
-}
-
-impl std::ops::AddAssign for Integral {
-    fn add_assign(&mut self, other: Self) {
-        self.value += other.value;
-        self.error += other.error;
-    }
-}
-
-impl std::ops::Div<f64> for Integral {
-    type Output = Self;
-
-    fn div(self, by: f64) -> Self {
-        Self {
-            value: self.value / by,
-            error: self.error / by,
-        }
-    }
-}
-
 /// The divergence of a system at given values.
 #[derive(Debug)]
-pub struct Divergence {
+pub(crate) struct Divergence {
     system: Arc<dyn System>,
     contacts: Vec<(ContactLayout, Gap)>,
     coefficients: Vec<f64>,
@@ -96,7 +70,7 @@ impl Divergence {
     ///
     /// # Errors
     /// If parameters or the frequency are outside their ranges, levels are out of order, or the mass matrix is singular.
-    pub fn new(system: &dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
+    pub(crate) fn new(system: &dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
         validate::values(system, parameters, omega)?;
         let layout = Layout::of(system);
         let n = layout.coordinates;
@@ -161,8 +135,9 @@ impl Divergence {
         sum
     }
 
-    /// Its integral over the time of a stretch.
-    pub fn over(&mut self, stretch: &dyn Stretch) -> Integral {
+    /// Its integral over the time of a stretch. The error is rounding, and what the nodes do not resolve; that of the motion itself is not
+    /// in it.
+    pub(crate) fn over(&mut self, stretch: &dyn Stretch) -> Estimate {
         let (from, to) = stretch.phases();
         let count = ((to - from).abs() / PANEL * self.grading.stretch()).ceil();
         let first = 1.0 / count.max(1.0);
@@ -172,7 +147,7 @@ impl Divergence {
                 .rev()
                 .map(|k| (k as f64 * first, 0)),
         );
-        let (mut sum, mut size, mut seen) = (Integral::default(), 0.0_f64, 0);
+        let (mut sum, mut size, mut seen) = (Estimate::default(), 0.0_f64, 0);
         while let Some((start, halvings)) = panels.pop() {
             let width = first * 0.5_f64.powi(halvings);
             let values = self.values(stretch, start, width);
@@ -186,13 +161,13 @@ impl Divergence {
                 continue;
             }
             let products = values.iter().zip(&self.rule.weights);
-            sum += Integral {
+            sum.add(Estimate {
                 value: width * products.map(|(x, weight)| weight * x).sum::<f64>(),
                 error: error + width * f64::EPSILON * size,
-            };
+            });
         }
         self.panels = panels;
-        sum / (self.base / (to - from))
+        sum.over(self.base / (to - from))
     }
 
     /// The divergence at the nodes of a panel, times the slope of the phase by the variable of the panels.
@@ -282,8 +257,8 @@ mod tests {
         let mut flow = Integrated::new(system, values, 0.9, 1e-13).expect("a flow");
         let mut divergence = Divergence::new(system, values, 0.9).expect("values");
         let (mut state, mut tangent) = ([1.2, 1.4], Tangent::of_state(1, None));
-        let mut sum = Integral::default();
-        let mut see = |stretch: &dyn Stretch| sum += divergence.over(stretch);
+        let mut sum = Estimate::default();
+        let mut see = |stretch: &dyn Stretch| sum.add(divergence.over(stretch));
         let to = periods * std::f64::consts::TAU;
         flow.advance(0.0, to, &mut state, Some(&mut tangent), Some(&mut see))
             .expect("a motion");

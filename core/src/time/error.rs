@@ -137,27 +137,14 @@ crate::error::room_error! {
 }
 
 /// No orbit was found where motions were to lead to one.
-#[derive(Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("no periodic orbit found at {}", Decimal::plain(*.value))]
-#[non_exhaustive]
-pub struct MotionError {
+pub(crate) struct MotionError {
     /// Value of what is varied.
-    pub value: f64,
+    pub(crate) value: f64,
     /// Why the motion cannot be computed.
     #[source]
-    pub reason: FlowError,
-}
-
-impl std::fmt::Debug for MotionError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        if !f.alternate() {
-            return std::fmt::Display::fmt(&crate::error::chain(self), f);
-        }
-        f.debug_struct("MotionError")
-            .field("value", &self.value)
-            .field("reason", &self.reason)
-            .finish()
-    }
+    pub(crate) reason: FlowError,
 }
 
 impl FlowError {

@@ -5,21 +5,11 @@ use std::f64::consts::TAU;
 use super::{FlowError, Stretch};
 use crate::time::stroboscope::Stroboscope;
 
-/// How long a motion is recorded, and how densely.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Span {
-    /// Periods of the declaration.
-    pub periods: usize,
-    /// States in each of them.
-    pub samples: usize,
-}
-
-/// Shows a motion to `see`: at its start, and then at equal distances. Times are counted in periods of the declaration from the
-/// start.
+/// Shows a motion of so many periods of the declaration to `see`: at its start, and then at equal distances, with so many states in each
+/// period. Times are counted in periods of the declaration from the start.
 ///
 /// ```
 /// use hertzian::time::history;
-/// use hertzian::time::history::Span;
 /// use hertzian::time::stroboscope::Stroboscope;
 ///
 /// hertzian::oscillator! {
@@ -32,8 +22,8 @@ pub struct Span {
 /// let model = Linear { drive: 3.0 };
 /// let mut map = Stroboscope::of(&model, 1.0)?;
 /// let (mut state, mut positions) = ([0.0, 0.0], Vec::new());
-/// let span = Span { periods: 2, samples: 50 };
-/// history::record(&mut map, &mut state, span, &mut |_, state| positions.push(state[0]))?;
+/// let (periods, samples) = (2, 50);
+/// history::record(&mut map, &mut state, periods, samples, &mut |_, state| positions.push(state[0]))?;
 /// assert_eq!(positions.len(), 101);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
@@ -43,7 +33,8 @@ pub struct Span {
 pub fn record(
     map: &mut Stroboscope,
     state: &mut [f64],
-    Span { periods, samples }: Span,
+    periods: usize,
+    samples: usize,
     see: &mut dyn FnMut(f64, &[f64]),
 ) -> Result<(), FlowError> {
     let mut between = state.to_vec();

@@ -5,13 +5,12 @@
 
 #[doc(hidden)]
 pub mod affine;
-pub mod divergence;
-pub mod estimate;
 pub mod history;
 pub mod poincare;
 pub mod stroboscope;
 
 pub(crate) mod centred;
+pub(crate) mod divergence;
 mod error;
 mod field;
 pub(crate) mod gap;
@@ -20,7 +19,8 @@ pub(crate) mod signals;
 #[cfg(test)]
 mod tests;
 
-pub use error::{FlowError, MotionError};
+pub use error::FlowError;
+pub(crate) use error::MotionError;
 #[doc(hidden)]
 pub use integrated::Integrated;
 
@@ -30,10 +30,10 @@ use crate::model;
 use crate::system::{System, Variable};
 
 /// What is shown every smooth stretch of a motion.
-pub type See<'s> = &'s mut (dyn FnMut(&dyn Stretch) + 's);
+pub(crate) type See<'s> = &'s mut (dyn FnMut(&dyn Stretch) + 's);
 
 /// What is shown the number of a phase, and the state and the columns of the tangent there.
-pub type Show<'s> = &'s mut (dyn FnMut(usize, &[f64], &[f64]) + 's);
+pub(crate) type Show<'s> = &'s mut (dyn FnMut(usize, &[f64], &[f64]) + 's);
 
 /// The flow of one system, at values of its parameters and of `omega` that can be changed.
 ///

@@ -6,11 +6,9 @@ use std::thread;
 use hertzian::attractors::basin::{Basin, Basins};
 use hertzian::backbone::{Backbone, FreeOscillation, FreePoint, PhaseResonance, ResonancePoint};
 use hertzian::bifurcation::Diagram;
-use hertzian::generic::Interpreted;
 use hertzian::shooting::BifurcationCurve;
 use hertzian::structure::Structure;
 use hertzian::time::affine::Affine;
-use hertzian::time::divergence::Divergence;
 use hertzian::time::stroboscope::Stroboscope;
 use hertzian::time::{Flow, FlowError, Integrated};
 use hertzian::{Bifurcations, Branch, Error, Event, FrequencyResponse, Point, Shooting, System};
@@ -61,7 +59,6 @@ fn everything_computed_can_be_kept_and_sent() {
     is::<Backbone<ResonancePoint>>();
     is::<Basin>();
     is::<Basins>();
-    is::<Interpreted>();
     is::<Structure>();
     is::<Box<dyn System>>();
     is::<Error>();
@@ -74,7 +71,6 @@ fn motions_can_be_kept_and_sent() {
     is::<Stroboscope>();
     is::<Affine>();
     is::<Integrated>();
-    is::<Divergence>();
     let map = || {
         let model = Linear {
             zeta: ZETA,

@@ -1,6 +1,6 @@
 //! A declaration read from text is the one that the macro compiles.
 
-use hertzian::generic::{Declaration, Interpreted};
+use hertzian::generic::{Declaration, interpreted};
 use hertzian::law::{Law, On};
 use hertzian::system::{System, Variable};
 
@@ -79,7 +79,7 @@ fn compare(model: &dyn System, text: &str) {
         assert_close(&found, &expected);
     }
 
-    let interpreted = Interpreted::of(model);
+    let interpreted = interpreted(model);
     for index in 0..facts.laws {
         same_law(declared.law(index), interpreted.law(index));
     }

@@ -89,8 +89,8 @@ fn wrap(runtime: &TokenStream, name: &Ident, items: &TokenStream) -> TokenStream
     let items = quote! {
         impl #name {
             /// The same system, its laws interpreted from data: the oracle of the generated code.
-            pub fn generic(&self) -> __generic::Interpreted {
-                __generic::Interpreted::of(self)
+            pub fn generic(&self) -> __Arc<dyn __system::System> {
+                __generic::interpreted(self)
             }
         }
 

@@ -26,6 +26,7 @@ pub use grid::{Axis, Grid};
 pub(crate) use orbit::Finder;
 
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use super::log::{Log, LogError};
 use super::request::Request;
@@ -116,9 +117,8 @@ pub struct Basins {
 }
 
 /// Why there are no basins.
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum BasinError {
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum BasinError {
     /// The request is at fault.
     #[error("{name} {must}")]
     Request {
@@ -145,13 +145,10 @@ pub enum BasinError {
     },
 }
 
-crate::error::room_error! {
-    BasinError, BasinError::kind;
-    Request { name, must }
-    Threads { count }
-    Motion { reason }
-    ;
-    Log
+impl From<BasinError> for Error {
+    fn from(error: BasinError) -> Self {
+        Self::new(error.kind(), error)
+    }
 }
 
 impl Basin {
@@ -220,16 +217,21 @@ impl Basin {
         Ok(self.compute(self.moving()?, None, &mut visit)?)
     }
 
-    /// As [`run_with`](Self::run_with), and goes on from what a log holds of this request; what is computed is added to it.
+    /// As [`run_with`](Self::run_with), and goes on from what a file holds of these basins; what is computed is added to it. A
+    /// file that is not there is begun. `model` is one line that says which system it is, with everything that its motions depend on: a
+    /// file of another one, or of another request, is refused.
     ///
     /// # Errors
-    /// As [`run`](Self::run), and if the log cannot be written.
+    /// As [`run`](Self::run), and if the file cannot be used.
     pub fn resume(
         &self,
-        log: &mut Log,
+        path: impl AsRef<Path>,
+        model: &str,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
     ) -> Result<Basins, Error> {
-        Ok(self.compute(self.moving()?, Some(log), &mut visit)?)
+        let moving = self.moving()?;
+        let mut log = Log::open(path.as_ref(), &format!("{model}, {self:?}"))?;
+        Ok(self.compute(moving, Some(&mut log), &mut visit)?)
     }
 
     /// A flow for each thread, and at which values.

@@ -10,8 +10,8 @@ use super::attractor::{Attractor, Fate};
 use super::catalogue::Catalogue;
 use super::orbit::{Finder, Refined};
 use crate::attractors::lyapunov::Lyapunov;
+use crate::numeric::estimate::Estimate;
 use crate::time::FlowError;
-use crate::time::estimate::Estimate;
 use crate::time::stroboscope::Stroboscope;
 
 /// The first return that is tried, relative to the size of the motion.
@@ -103,7 +103,7 @@ impl Recogniser {
             let Ok(largest) = self.exponent(length) else {
                 return Fate::Failed;
             };
-            let margin = 3.0 * largest.standard_error;
+            let margin = 3.0 * largest.error;
             // Where neighbours part by less than a factor e in all that time, rounding alone may have done it.
             let parts = largest.value * (BATCHES * length) as f64 > 1.0;
             if parts && largest.value > margin {
@@ -122,8 +122,8 @@ impl Recogniser {
         for _ in 0..BATCHES {
             lyapunov.batch(length)?;
         }
-        let means = lyapunov.batches().iter().map(|batch| batch.exponents[0]);
-        Ok(Estimate::of(means))
+        let means = lyapunov.batches().iter().map(|batch| batch[0]);
+        Ok(Estimate::of_batches(means))
     }
 }
 

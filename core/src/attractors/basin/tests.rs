@@ -156,7 +156,6 @@ fn a_run_that_was_ended_goes_on_and_computes_nothing_twice() {
     let mut runs = 0;
     let mut computed = 0;
     loop {
-        let mut log = Log::open(&path, "basin").expect("a log");
         // Ends after a few blocks.
         let mut left = 5;
         let watch = |progress: Progress<'_>| {
@@ -169,7 +168,7 @@ fn a_run_that_was_ended_goes_on_and_computes_nothing_twice() {
                 ControlFlow::Break(())
             }
         };
-        let part = basin(64).threads(2).resume(&mut log, watch);
+        let part = basin(64).threads(2).resume(&path, "basin", watch);
         let part = part.expect("basins");
         runs += 1;
         if part.complete {
@@ -188,9 +187,10 @@ fn a_run_that_was_ended_goes_on_and_computes_nothing_twice() {
     // A record that was being written when the process ended is computed again.
     let bytes = std::fs::read(&path).expect("readable");
     std::fs::write(&path, &bytes[..bytes.len() - 3]).expect("written");
-    let mut log = Log::open(&path, "basin").expect("a log");
-    let again = basin(64).resume(&mut log, |_| ControlFlow::Continue(()));
-    assert_eq!(again.expect("basins"), whole);
+    let again = |request: Basin| request.resume(&path, "basin", |_| ControlFlow::Continue(()));
+    assert_eq!(again(basin(64)).expect("basins"), whole);
+    let other = again(basin(64).phase(0.5)).expect_err("another request");
+    assert_eq!(other.kind(), ErrorKind::File);
 }
 
 /// A cell whose motion was cut short is not looked at, and one that was looked at before has the fate that it has.

@@ -8,6 +8,7 @@ mod compute;
 mod tests;
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::Arc;
 
 use super::log::Log;
@@ -171,16 +172,20 @@ impl Sweep {
         self.sweep(None, &mut visit)
     }
 
-    /// As [`run_with`](Self::run_with), and goes on from what a log holds of this sweep; what is computed is added to it.
+    /// As [`run_with`](Self::run_with), and goes on from what a file holds of this sweep; what is computed is added to it. A
+    /// file that is not there is begun. `model` is one line that says which system it is, with everything that its motions depend on: a
+    /// file of another one, or of another request, is refused.
     ///
     /// # Errors
-    /// As [`run`](Self::run), and if the log cannot be written.
+    /// As [`run`](Self::run), and if the file cannot be used.
     pub fn resume(
         &self,
-        log: &mut Log,
+        path: impl AsRef<Path>,
+        model: &str,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Swept, Error> {
-        self.sweep(Some(log), &mut visit)
+        let mut log = Log::open(path.as_ref(), &format!("{model}, {self:?}"))?;
+        self.sweep(Some(&mut log), &mut visit)
     }
 
     /// All values, in order.

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use super::*;
 use crate::testing::one_sided::{OneSided, one_sided};
-use crate::time::poincare::Direction;
 
 const MODEL: OneSided = one_sided(1.0);
 
@@ -64,7 +63,6 @@ fn a_run_that_was_ended_goes_on_with_the_same_rows() {
     let _ = std::fs::remove_file(&path);
     let mut computed = 0;
     let swept = loop {
-        let mut log = Log::open(&path, "sweep").expect("a log");
         let before = computed;
         let mut see = |progress: Progress<'_>| {
             computed += 1;
@@ -75,7 +73,7 @@ fn a_run_that_was_ended_goes_on_with_the_same_rows() {
                 ControlFlow::Break(())
             }
         };
-        let swept = sweep.resume(&mut log, &mut see).expect("rows");
+        let swept = sweep.resume(&path, "sweep", &mut see).expect("rows");
         if swept.complete {
             break swept;
         }
@@ -96,20 +94,21 @@ fn values_that_failed_are_the_same_when_a_run_goes_on() {
     assert_eq!(all.rows.iter().filter(failed).count(), 4);
     let folder = std::env::temp_dir().join(format!("hertzian-failed-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
-    let mut log = Log::open(folder.join("sweep"), "sweep").expect("a log");
+    let path = folder.join("sweep");
+    let kept = || {
+        let log = Log::open(&path, &format!("sweep, {sweep:?}"));
+        log.expect("a log").records().len()
+    };
     let visit = |progress: Progress<'_>| match progress.done {
         6 => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     };
-    let part = sweep.resume(&mut log, visit).expect("rows");
+    let part = sweep.resume(&path, "sweep", visit).expect("rows");
     assert_eq!(part.rows[..], all.rows[..6]);
-    let mut log = Log::open(folder.join("sweep"), "sweep").expect("a log");
-    assert_eq!(log.records().len(), 6);
+    assert_eq!(kept(), 6);
     let visit = |_: Progress<'_>| ControlFlow::Continue(());
-    assert_eq!(sweep.resume(&mut log, visit), Ok(all));
-    drop(log);
-    let log = Log::open(folder.join("sweep"), "sweep").expect("a log");
-    assert_eq!(log.records().len(), 10);
+    assert_eq!(sweep.resume(&path, "sweep", visit), Ok(all));
+    assert_eq!(kept(), 10);
     let _ = std::fs::remove_dir_all(&folder);
 }
 
@@ -157,7 +156,7 @@ fn what_cannot_be_swept_is_refused() {
 
 #[test]
 fn a_section_gives_its_crossings() {
-    let section = Section::entry(0, 0.0, Direction::Rising);
+    let section = Section::entry(0, 0.0);
     let sweep = sweep(1.0, 1.0, [-2.0, 0.18]).values(1).section(section);
     let rows = sweep.run().expect("rows").rows;
     // Period one meets the contact once in each period, at one speed.

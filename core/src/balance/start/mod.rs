@@ -24,7 +24,6 @@ mod motion;
 mod rest;
 
 use crate::balance::Resolution;
-use crate::branches::error::OrbitError;
 use crate::cancel::Cancel;
 use crate::continuation::newton::{NewtonError, NewtonOptions};
 use crate::continuation::statistics::Statistics;
@@ -116,15 +115,7 @@ pub(crate) fn start(
     let mut effort = Effort::of(effort::LIMIT, request.cancel);
     let longer = longer::orbit(request, &found, &mut effort);
     *statistics += effort.statistics;
-    longer.map_err(|attempts| {
-        let value = request.value;
-        let none = OrbitError::NoSuchPeriod {
-            period,
-            value,
-            attempts,
-        };
-        none.into()
-    })
+    longer.map_err(|attempts| attempts.without_period(period, request.value).into())
 }
 
 /// Extended unknowns of an orbit of period one without the odd symmetry, if one is found near the symmetric one.
@@ -224,6 +215,7 @@ mod tests {
     use super::*;
     use crate::balance::Parity;
     use crate::balance::aft::Aft;
+    use crate::branches::error::OrbitError;
     use crate::error::ErrorKind;
     use crate::testing::by_hand::PowerForm;
 
@@ -285,13 +277,13 @@ mod tests {
         let simple = orbit_of_period_one(request(&system, 1, &cancel), &mut effort).unwrap();
         let whole = longer::orbit(request(&system, 2, &cancel), &simple, &mut effort).unwrap_err();
         assert_eq!((whole.planned, whole.made), (64, 64));
-        assert!(whole.shorter > 32, "{whole}");
+        assert!(whole.shorter > 32, "{whole:?}");
         let mut effort = Effort::of(1, &cancel);
         let part = longer::orbit(request(&system, 2, &cancel), &simple, &mut effort).unwrap_err();
         assert_eq!(part.made, 1);
-        let told = part.to_string();
+        let told = part.without_period(2, 1.0).to_string();
         assert!(
-            told.starts_with("a search may take no more work after 1 of 64 attempts"),
+            told.contains(": a search may take no more work after 1 of 64 attempts"),
             "{told}"
         );
     }

@@ -4,7 +4,6 @@ mod cell;
 mod summary;
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 pub use cell::{Cell, CellVerdict};
@@ -15,7 +14,7 @@ use crate::branches::branch::{Branch, Model};
 use crate::branches::progress::{Progress, Stage};
 use crate::error::{Error, ErrorKind};
 use crate::model::request::RequestError;
-use crate::model::{validate, valued::Valued};
+use crate::model::{validate, valued::with_values};
 use crate::orbit::observe::Wanted;
 use crate::response::{FrequencyResponse, OrbitMethod};
 use crate::system::Variable;
@@ -203,7 +202,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
             Variable::Parameter(index) => {
                 let mut values = request.request.parameters();
                 values[index] = value;
-                request.request.system = Arc::new(Valued::new(&self.request.system, values));
+                request.request.system = with_values(&self.request.system, values);
             }
         }
         request

@@ -16,7 +16,8 @@ mod text;
 use std::sync::Arc;
 
 use crate::law::Law;
-use crate::system::{System, SystemFacts, Variable};
+use crate::model::valued::with_laws;
+use crate::system::System;
 
 #[doc(hidden)]
 pub use consistent::DataError;
@@ -27,63 +28,14 @@ pub use law::InterpretedLaw;
 #[cfg(feature = "text")]
 pub use text::{Declaration, DeclarationError, Fault, law_from_text};
 
-/// A system whose laws are interpreted; everything else is the system's own, and so is a law that has no
-/// [data](Law::data), or data that do not describe it.
+/// The same system at the values that its parameters have now, its laws interpreted; everything else is the system's own, and so is a law
+/// that has no [data](crate::law::Law::data), or data that do not describe it.
 ///
 /// It computes what the system computes, from the same declaration, without the generated kernels.
-#[derive(Debug, Clone)]
-pub struct Interpreted {
-    system: Arc<dyn System>,
-    /// In the order of the system's; `None` where it has no data.
-    laws: Vec<Option<InterpretedLaw>>,
-}
-
-impl Interpreted {
-    /// The same system at the values that its parameters have now, its laws interpreted.
-    pub fn of(system: &dyn System) -> Self {
-        let laws = (0..system.facts().laws)
-            .map(|index| InterpretedLaw::of(system.law(index)))
-            .collect();
-        Self {
-            system: system.shared(),
-            laws,
-        }
-    }
-}
-
-// All but the laws is the system's own; another wrapper, which changes its values, says so in the same words.
-impl System for Interpreted {
-    fn facts(&self) -> &SystemFacts {
-        self.system.facts()
-    }
-
-    fn values(&self, values: &mut [f64]) {
-        self.system.values(values);
-    }
-
-    fn coefficients(&self, parameters: &[f64], omega: f64, coefficients: &mut [f64]) {
-        self.system.coefficients(parameters, omega, coefficients);
-    }
-
-    fn coefficients_by(
-        &self,
-        variable: Variable,
-        parameters: &[f64],
-        omega: f64,
-        derivatives: &mut [f64],
-    ) {
-        self.system
-            .coefficients_by(variable, parameters, omega, derivatives);
-    }
-
-    fn law(&self, index: usize) -> &dyn Law {
-        match &self.laws[index] {
-            Some(law) => law,
-            None => self.system.law(index),
-        }
-    }
-
-    fn shared(&self) -> Arc<dyn System> {
-        Arc::new(self.clone())
-    }
+pub fn interpreted(system: &dyn System) -> Arc<dyn System> {
+    let laws = (0..system.facts().laws).map(|index| {
+        let law = InterpretedLaw::of(system.law(index))?;
+        Some(Box::new(law) as Box<dyn Law>)
+    });
+    with_laws(system, laws.collect())
 }

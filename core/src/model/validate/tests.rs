@@ -10,7 +10,7 @@ use crate::response::FrequencyResponse;
 use crate::shooting::Shooting;
 use crate::time;
 use crate::time::Options;
-use crate::time::poincare::{Direction, Section};
+use crate::time::poincare::Section;
 use crate::time::stroboscope::Stroboscope;
 
 crate::oscillator! {
@@ -188,7 +188,7 @@ fn motions() {
     let run = |&[escape, start]: &[f64; 2]| sweep(escape, start).run().map(drop);
     refused(run, &rows);
     let section = |&value: &f64| {
-        let section = Section::entry(0, value, Direction::Rising);
+        let section = Section::entry(0, value);
         let follow = section.follow(&mut map(), &mut [0.0, 0.0], 1, &mut |_| {});
         follow.map_err(Error::from)
     };

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use nalgebra::Complex;
 
-use super::{Cost, Method, Stability};
+use super::{Method, Stability};
 
 /// What a [`Method`] says of one orbit: see [`Branch::multipliers`](crate::Branch::multipliers).
 #[derive(Debug, Clone, PartialEq)]
@@ -34,8 +34,16 @@ pub struct Answer {
     /// stiffness and damping are smooth enough that their Fourier coefficients fall exponentially: never where a contact opens.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub bound: Option<f64>,
-    /// What it cost, both orbits together.
-    pub cost: Cost,
+    /// Evaluations of the derivatives of a contact's force at one instant, with those for the error.
+    pub slopes: usize,
+    /// Contacts whose slopes were made into Fourier coefficients, likewise.
+    pub contacts: usize,
+    /// Exponentials of a matrix, likewise.
+    pub exponentials: usize,
+    /// Matrices whose eigenvalues were computed, likewise.
+    pub spectra: usize,
+    /// Order of the largest matrix among these.
+    pub order: usize,
     /// The time that took, without that of correcting the orbit.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub elapsed: Duration,

@@ -189,6 +189,7 @@ impl Judge {
         // An orbit closed by integration is at the value itself.
         let moved = finer.filter(|_| self.refined.is_none());
         let moved = moved.and_then(|finer| finer.extended().last());
+        let cost = self.engine.cost();
         Answer {
             method: self.method,
             stability: stability.beside(balance.rigid()),
@@ -197,7 +198,11 @@ impl Judge {
             by_method,
             by_truncation,
             bound,
-            cost: self.engine.cost(),
+            slopes: cost.slopes,
+            contacts: cost.contacts,
+            exponentials: cost.exponentials,
+            spectra: cost.spectra,
+            order: cost.order,
             elapsed: started.elapsed(),
         }
     }

@@ -78,20 +78,18 @@ impl std::fmt::Display for Method {
 }
 
 /// What multipliers cost.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct Cost {
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Cost {
     /// Evaluations of the derivatives of a contact's force at one instant.
-    pub slopes: usize,
+    pub(crate) slopes: usize,
     /// Contacts whose slopes were made into Fourier coefficients.
-    pub contacts: usize,
+    pub(crate) contacts: usize,
     /// Exponentials of a matrix.
-    pub exponentials: usize,
+    pub(crate) exponentials: usize,
     /// Matrices whose eigenvalues were computed.
-    pub spectra: usize,
+    pub(crate) spectra: usize,
     /// Order of the largest matrix among these.
-    pub order: usize,
+    pub(crate) order: usize,
 }
 
 // Counts of a continuation (`Statistics`) and of motions in time (`Work`) are summed alike: other counts.
@@ -102,16 +100,6 @@ impl std::ops::AddAssign for Cost {
         self.exponentials += other.exponentials;
         self.spectra += other.spectra;
         self.order = self.order.max(other.order);
-    }
-}
-
-impl std::fmt::Display for Cost {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "{} slopes, {} contacts, {} exponentials, {} spectra, order {}",
-            self.slopes, self.contacts, self.exponentials, self.spectra, self.order
-        )
     }
 }
 

@@ -11,10 +11,10 @@ pub(crate) mod table;
 #[cfg(feature = "serde")]
 mod whole;
 
-pub use crate::numeric::decimal::Decimal;
+pub use crate::numeric::decimal::{plain, rounded, to_error};
 pub use hertzian_file::{can_write, write};
 
 #[cfg(feature = "serde")]
 pub use json::JSON_VERSION;
-pub use npy::{Npy, Number};
+pub use npy::{npy, npy_of_labels};
 pub use table::{COLUMNS, Table, cells};

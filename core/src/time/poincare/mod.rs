@@ -18,7 +18,7 @@ use search::Search;
 
 /// Which crossings of a surface count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
+enum Direction {
     /// From below to above.
     Rising,
     /// From above to below.
@@ -30,10 +30,11 @@ pub enum Direction {
 /// A function of phase and state.
 type Function<'a> = dyn Fn(f64, &[f64]) -> f64 + Send + Sync + 'a;
 
-/// A surface in the space of phase and state.
+/// A surface in the space of phase and state. Crossings from below to above count, or those that [`falling`](Section::falling) or
+/// [`both`](Section::both) asks for.
 ///
 /// ```
-/// use hertzian::time::poincare::{Direction, Section};
+/// use hertzian::time::poincare::Section;
 /// use hertzian::time::stroboscope::Stroboscope;
 ///
 /// hertzian::oscillator! {
@@ -49,7 +50,7 @@ type Function<'a> = dyn Fn(f64, &[f64]) -> f64 + Send + Sync + 'a;
 /// let mut crossings = 0;
 /// // Once it has settled, the motion passes zero upwards once in each period.
 /// (0..20).try_for_each(|_| map.map(&mut state))?;
-/// let section = Section::entry(0, 0.0, Direction::Rising);
+/// let section = Section::entry(0, 0.0);
 /// section.follow(&mut map, &mut state, 5, &mut |_| crossings += 1)?;
 /// assert_eq!(crossings, 5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -85,22 +86,19 @@ pub struct Crossing<'a> {
 
 impl<'a> Section<'a> {
     /// The zeros of a continuous function of phase and state.
-    pub fn new(
-        direction: Direction,
-        function: impl Fn(f64, &[f64]) -> f64 + Send + Sync + 'a,
-    ) -> Self {
+    pub fn new(function: impl Fn(f64, &[f64]) -> f64 + Send + Sync + 'a) -> Self {
         Self {
             function: Box::new(function),
-            direction,
+            direction: Direction::Rising,
             entries: 0,
         }
     }
 
     /// One entry of the state passes a value: a coordinate, or with `entry >= n` its rate.
-    pub fn entry(entry: usize, value: f64, direction: Direction) -> Self {
+    pub fn entry(entry: usize, value: f64) -> Self {
         Self {
             entries: entry + 1,
-            ..Self::new(direction, move |_, state| state[entry] - value)
+            ..Self::new(move |_, state| state[entry] - value)
         }
     }
 
@@ -114,7 +112,6 @@ impl<'a> Section<'a> {
         omega: f64,
         contact: usize,
         value: f64,
-        direction: Direction,
     ) -> Result<Self, Error> {
         validate::values(system, parameters, omega)?;
         let layout = Layout::of(system);
@@ -130,8 +127,16 @@ impl<'a> Section<'a> {
         let distance = move |phase: f64, state: &[f64]| gap.at(phase, state).0 - value;
         Ok(Self {
             entries: 2 * layout.coordinates,
-            ..Self::new(direction, distance)
+            ..Self::new(distance)
         })
+    }
+
+    hertzian_contract::setters! { self:
+        /// Crossings from above to below count.
+        falling() { self.direction = Direction::Falling }
+
+        /// Crossings of either direction count.
+        both() { self.direction = Direction::Both }
     }
 
     fn counts(&self, rises: bool) -> bool {

@@ -18,9 +18,8 @@ fn map(model: &Linear) -> Stroboscope {
 }
 
 /// `x = cos 2 tau + b` passes zero where `cos 2 tau = -b`.
-fn crossings(offset: f64, direction: Direction) -> Vec<(f64, bool)> {
+fn crossings(section: &Section<'_>) -> Vec<(f64, bool)> {
     let model = Linear { drive: 0.0 };
-    let section = Section::entry(0, -offset, direction);
     let mut found = Vec::new();
     let mut state = [1.0, 0.0];
     section
@@ -34,9 +33,10 @@ fn crossings(offset: f64, direction: Direction) -> Vec<(f64, bool)> {
 #[test]
 fn crossings_are_where_the_closed_form_says() {
     let offset: f64 = 0.3;
+    let section = || Section::entry(0, -offset);
     let angle = (-offset).acos() / 2.0;
     let pi = std::f64::consts::PI;
-    let found = crossings(offset, Direction::Both);
+    let found = crossings(&section().both());
     let expected = (0..4).flat_map(|k| {
         let start = pi * f64::from(k);
         [(start + angle, false), (start + pi - angle, true)]
@@ -50,8 +50,8 @@ fn crossings_are_where_the_closed_form_says() {
         );
         assert_eq!(found.1, expected.1);
     }
-    assert_eq!(crossings(offset, Direction::Rising).len(), 4);
-    assert_eq!(crossings(offset, Direction::Falling).len(), 4);
+    assert_eq!(crossings(&section()).len(), 4);
+    assert_eq!(crossings(&section().falling()).len(), 4);
 }
 
 /// Two crossings within a hundredth of the distance of samples, and a turn just before the surface: wherever the pair lies
@@ -74,7 +74,8 @@ fn two_crossings_between_samples_are_both_found() {
         for depth in [depth, -depth] {
             let mut state = [(2.0 * start).cos(), -2.0 * (2.0 * start).sin()];
             let mut map = Stroboscope::new(flow(exact)).phase(start);
-            Section::entry(0, depth - 1.0, Direction::Both)
+            Section::entry(0, depth - 1.0)
+                .both()
                 .follow(&mut map, &mut state, 2, &mut |crossing| {
                     found.push(start + TAU * crossing.periods);
                 })
@@ -97,7 +98,7 @@ fn two_crossings_between_samples_are_both_found() {
 fn entries_are_counted() {
     let model = Linear { drive: 0.0 };
     for (entry, entries) in [(7, 2), (0, 1), (0, 4)] {
-        let section = Section::entry(entry, 0.0, Direction::Both);
+        let section = Section::entry(entry, 0.0);
         let mut state = vec![0.0; entries];
         let error = section
             .follow(&mut map(&model), &mut state, 1, &mut |_| {})
@@ -110,7 +111,7 @@ fn entries_are_counted() {
 #[test]
 fn a_surface_at_the_end_of_a_stretch_is_crossed_once() {
     let model = Linear { drive: 0.0 };
-    let section = Section::new(Direction::Both, |_, state| state[1]);
+    let section = Section::new(|_, state| state[1]).both();
     let mut quarters = Vec::new();
     let mut state = [1.0, 0.0];
     section
@@ -138,11 +139,12 @@ fn a_moving_gap_is_crossed_where_it_closes() {
     let model = Moving { stiffness: 0.0 };
     let flow = Affine::new(&model, &[0.0], 1.0).expect("affine");
     let mut map = Stroboscope::new(Box::new(flow));
-    let section = Section::gap(&model, &[0.0], 1.0, 0, 0.0, Direction::Both);
+    let section = Section::gap(&model, &[0.0], 1.0, 0, 0.0);
     let mut phases = Vec::new();
     let mut state = [1.0, 0.0];
     section
         .expect("a contact")
+        .both()
         .follow(&mut map, &mut state, 1, &mut |crossing| {
             phases.push(crossing.phase);
         })
@@ -156,7 +158,7 @@ fn a_moving_gap_is_crossed_where_it_closes() {
         assert!((found - expected).abs() < 1e-13, "{found} {expected}");
     }
     let of = |values, contact| {
-        let section = Section::gap(&model, values, 1.0, contact, 0.0, Direction::Both);
+        let section = Section::gap(&model, values, 1.0, contact, 0.0);
         section.map(|_| ()).expect_err("it cannot be")
     };
     assert!(matches!(

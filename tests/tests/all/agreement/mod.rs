@@ -15,7 +15,7 @@ mod random;
 mod tree;
 
 use bound::Bound;
-use hertzian::generic::{Interpreted, LawData, PieceData};
+use hertzian::generic::{LawData, PieceData, interpreted};
 use hertzian::law::{Derivatives, Law, On, Parts};
 use hertzian::power::Instructions;
 use hertzian::system::{Place, System};
@@ -62,7 +62,7 @@ fn generated_interpreted_and_dual_numbers_agree() {
         let mut random = Random::seeded(20_210_603);
         for _ in 0..batches {
             let system = model(&mut random);
-            let interpreted = Interpreted::of(system.as_ref());
+            let interpreted = interpreted(system.as_ref());
             assert!(!system.facts().contacts.is_empty(), "{name}: no contacts");
             for (contact, facts) in system.facts().contacts.iter().enumerate() {
                 let arguments = arguments(system.as_ref(), contact);

@@ -1,13 +1,14 @@
 //! One model: its branches by both methods in both directions, compared with each other and with what is true of some orbits.
 
 use std::cell::Cell;
+use std::error::Error as _;
 use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use hertzian::error::chain;
 use hertzian::generic::Declaration;
-use hertzian::time::{FlowError, MotionError};
+use hertzian::time::FlowError;
 use hertzian::{
     Branch, ContactEquation, Error, FrequencyResponse, ModelError, OrbitError, Shooting,
 };
@@ -302,9 +303,8 @@ impl Case {
 
     fn no_branch(&mut self, name: &str, value: f64, error: &Error) {
         let refused = || format!("{name} from {value:?}: {}", chain(error));
-        let motion = error
-            .downcast_ref()
-            .map(|motion: &MotionError| &motion.reason);
+        let source = error.source();
+        let motion = source.and_then(|source| source.downcast_ref());
         if let Some(reason) = motion.or_else(|| error.downcast_ref()) {
             if let FlowError::Rests { .. } | FlowError::StepTooShort { .. } = reason {
                 self.find(Kind::Refused, refused());

@@ -8,7 +8,7 @@ mod points;
 mod switches;
 mod units;
 
-use hertzian::{Branch, Derivative, FrequencyResponse, Orbit, Shooting, System};
+use hertzian::{Branch, Estimate, FrequencyResponse, Orbit, Shooting, System};
 
 /// A function of a parameter's change, with the step of its differences.
 fn richardson(h: f64, of: impl Fn(f64) -> f64) -> (f64, f64) {
@@ -54,7 +54,7 @@ fn shot(system: &dyn System, near: &Orbit) -> FrequencyResponse<Shooting> {
 /// Fails where a derivative differs from differences by more than a part of it, or than what both say of their errors, or than noise.
 fn assert_near(
     what: &str,
-    derivative: Derivative,
+    derivative: Estimate,
     (expected, error): (f64, f64),
     scale: f64,
     noise: f64,

@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 
 use super::*;
+use crate::numeric::estimate::Estimate;
 use crate::oscillator;
-use crate::time::divergence::{Divergence, Integral};
+use crate::time::divergence::Divergence;
 
 /// One-sided or not, exponent and load of the motions that are compared.
 const MOTIONS: [(bool, f64, f64); 6] = [
@@ -166,8 +167,8 @@ fn areas_shrink_by_the_integrated_divergence() {
         let mut flow = Integrated::new(&model, &model.values, 0.9, 1e-12).unwrap();
         let mut divergence = Divergence::new(&model, &model.values, 0.9).unwrap();
         let mut tangent = Tangent::of_state(1, None);
-        let (mut state, mut sum) = ([1.2, 0.4], Integral::default());
-        let mut see = |stretch: &dyn Stretch| sum += divergence.over(stretch);
+        let (mut state, mut sum) = ([1.2, 0.4], Estimate::default());
+        let mut see = |stretch: &dyn Stretch| sum.add(divergence.over(stretch));
         let by = Some(&mut tangent);
         flow.advance(0.0, 3.0 * TAU, &mut state, by, Some(&mut see))
             .unwrap();

@@ -114,7 +114,7 @@ fn refused(error: &Error) -> String {
         Some(OrbitError::SearchLimit { reason, .. }) => {
             format!("no start within the limit: {}", in_words(*reason))
         }
-        Some(OrbitError::NoSuchPeriod { attempts, .. }) if attempts.made < attempts.planned => {
+        Some(OrbitError::NoSuchPeriod { planned, made, .. }) if made < planned => {
             "no start of that period within the limit".to_owned()
         }
         Some(OrbitError::NoSuchPeriod { .. }) => "no start of that period".to_owned(),
