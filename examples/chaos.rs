@@ -49,13 +49,12 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     for _ in 0..20 {
         motion.batch(2000)?;
     }
-    let exponents = motion.exponents();
-    for exponent in &exponents.exponents {
+    for exponent in motion.exponents() {
         let (value, error) = (exponent.value, exponent.error);
         println!("exponent {value:.4} per period, standard error {error:.4}");
     }
     // Volumes of states shrink by damping in contact alone.
-    println!("their sum {:.4}", exponents.sum.value);
+    println!("their sum {:.4}", motion.sum().value);
 
     Chart::new("Chaos of a contact that opens: ζ = 0.032, W = 1, A = 1.785, ω = 1")
         .x("x at the beginning of each period / static deflection")

@@ -104,7 +104,7 @@ pub use balance::aft::Aft;
 pub use balance_branch::options::HarmonicBalance;
 pub use bifurcation::Bifurcations;
 pub use bifurcation::backbone;
-pub use branches::branch::{Branch, Model};
+pub use branches::branch::{Branch, Model, Output, Parameter};
 pub use branches::error::OrbitError;
 pub use branches::orbit::Orbit;
 pub use branches::point::{Event, Point};
@@ -130,11 +130,10 @@ pub use numeric::estimate::Estimate;
 pub use numeric::{fourier, power};
 pub use orbit::stability::{Method, Stability, Verdict};
 pub use orbit::{observe, stability};
-pub use report::error::FileError;
 pub use report::export;
 #[doc(hidden)]
 pub use response::stages;
-pub use response::{Choice, Chosen, FrequencyResponse, OrbitMethod, Resume};
+pub use response::{Chosen, FrequencyResponse, OrbitMethod, Resume};
 pub use shooting::Shooting;
 pub use system::System;
 

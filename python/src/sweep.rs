@@ -6,7 +6,7 @@ use std::sync::Arc;
 use hertzian::attractors::sweep::{Row, Sweep, Swept};
 use hertzian::time::history::record;
 use hertzian::time::stroboscope::Stroboscope;
-use hertzian::time::{self, Options};
+use hertzian::time;
 use hertzian::{RequestError, System};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyMemoryError;
@@ -177,8 +177,9 @@ pub fn history<'py>(
         py,
         watch,
         |cancel, _| {
-            let options = Options::default().tolerance(tolerance).cancel(cancel);
-            let mut map = Stroboscope::new(time::of(system, omega, options)?);
+            let mut flow = time::of(system, omega, tolerance)?;
+            flow.until(cancel);
+            let mut map = Stroboscope::new(flow);
             let moved = record(
                 &mut map,
                 &mut state,

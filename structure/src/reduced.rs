@@ -3,7 +3,8 @@
 use std::io;
 use std::path::Path;
 
-use hertzian::structure::{Contact, DMatrix, Structure, StructureError, Value};
+use hertzian::Error;
+use hertzian::structure::{Contact, DMatrix, Structure, Value};
 use serde::{Deserialize, Serialize};
 
 use crate::description::{LoadKind, OutputKind, SparseStructure};
@@ -203,7 +204,7 @@ impl Reduced {
     ///
     /// # Errors
     /// If names or arguments of laws cannot be used.
-    pub fn structure(&self, of: &SparseStructure) -> Result<Structure, StructureError> {
+    pub fn structure(&self, of: &SparseStructure) -> Result<Structure, Error> {
         let m = self.vectors();
         let stiffness = DMatrix::from_fn(m, m, |i, j| if i == j { self.squares[i] } else { 0.0 });
         let damping = DMatrix::from_row_slice(m, m, &self.damping);

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use hertzian::attractors::lyapunov::{Exponents, Lyapunov};
+use hertzian::attractors::lyapunov::Lyapunov;
+use hertzian::Estimate;
 use hertzian::chart::{Chart, Page, Series};
 
 use super::output::{Results, Table};
@@ -32,7 +33,7 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         let start = task.start()?;
         let omega = options.model.frequency();
         let lyapunov = Lyapunov::new(&mut map, &start);
-        let mut lyapunov = lyapunov.divergence(task.system, &values, omega)?;
+        let mut lyapunov = lyapunov.with_divergence(task.system, &values, omega)?;
         for _ in 0..options.transient.unwrap_or(5000) {
             if !task.goes_on() {
                 break;
@@ -51,35 +52,37 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
             break;
         }
         let found = lyapunov.exponents();
+        let divergence = lyapunov.divergence().unwrap_or_default();
         let periods = (lyapunov.batches().len() * length) as f64;
         let mut row = vec![task.amplitude(drive)?, periods];
-        row.extend(found.exponents.iter().flat_map(|e| [e.value, e.error]));
-        let divergence = found.divergence.unwrap_or_default();
-        row.extend([found.sum.value, divergence.value]);
+        row.extend(found.iter().flat_map(|e| [e.value, e.error]));
+        row.extend([lyapunov.sum().value, divergence.value]);
         table.row(&row);
-        describe(&mut summary, &task.title(drive, "")?, &found);
+        describe(&mut summary, &task.title(drive, "")?, &lyapunov);
         let largest: Vec<f64> = lyapunov.batches().iter().map(|b| b[0]).collect();
-        page = page.chart(chart(&task.title(drive, "")?, &largest, length, &found));
+        page = page.chart(chart(&task.title(drive, "")?, &largest, length, found[0]));
     }
     Ok(table.with(page.to_svg(), summary, complete))
 }
 
-fn describe(text: &mut String, title: &str, found: &Exponents) {
+fn describe(text: &mut String, title: &str, motion: &Lyapunov<'_>) {
     // Writing to a string does not fail.
     let _ = writeln!(text, "{title}");
-    for (index, exponent) in found.exponents.iter().enumerate() {
+    for (index, exponent) in motion.exponents().iter().enumerate() {
         let _ = writeln!(text, "exponent   {}: {exponent} per period", index + 1);
     }
-    let divergence = found.divergence.unwrap_or_default();
+    let divergence = motion.divergence().unwrap_or_default();
     let _ = writeln!(
         text,
         "sum        {:.12}; the divergence over the same motion gives {:.12} +- {:.0e}",
-        found.sum.value, divergence.value, divergence.error
+        motion.sum().value,
+        divergence.value,
+        divergence.error
     );
 }
 
 /// How the mean of the largest exponent settles.
-fn chart(title: &str, batches: &[f64], length: usize, found: &Exponents) -> Chart {
+fn chart(title: &str, batches: &[f64], length: usize, largest: Estimate) -> Chart {
     let at = |index: usize| ((index + 1) * length) as f64;
     let mut sum = 0.0;
     let means = batches.iter().enumerate().map(|(index, batch)| {
@@ -87,7 +90,6 @@ fn chart(title: &str, batches: &[f64], length: usize, found: &Exponents) -> Char
         [at(index), sum / (index + 1) as f64]
     });
     let means: Vec<[f64; 2]> = means.collect();
-    let largest = found.exponents[0];
     let ends = [at(0), at(batches.len() - 1)];
     let level = |by: f64| {
         let value = largest.value + by * largest.error;

@@ -307,13 +307,12 @@ impl Task<'_> {
     /// # Errors
     /// If the values or the tolerance are outside of their ranges.
     pub fn flow(&self, drive: Option<f64>) -> Result<Box<dyn Flow>, Failure> {
-        let how = time::Options::default().tolerance(self.options.tolerance);
         let values = self.values(drive)?;
         Ok(time::at(
             self.system,
             &values,
             self.options.model.frequency(),
-            how,
+            self.options.tolerance,
         )?)
     }
 

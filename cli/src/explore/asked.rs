@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use clap::{Parser, ValueEnum};
 use hertzian::generic::Declaration;
-use hertzian::{Choice, System};
+use hertzian::System;
 use serde::{Deserialize, Serialize};
 
 use super::declared::Texts;
@@ -66,7 +66,7 @@ fn once() -> usize {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// As [`Choice`] has it: by the contact equation where a law opens or has a corner in the range, else by the balance.
+    /// As [`FrequencyResponse::choice`](hertzian::FrequencyResponse::choice) has it: by the contact equation where a law opens or has a corner in the range, else by the balance.
     #[default]
     Automatic,
     /// Harmonic balance.
@@ -193,9 +193,8 @@ impl Asked {
     pub fn method(&self, model: &dyn System) -> Result<By, Fault> {
         Ok(match self.by {
             Method::Automatic => {
-                let choice = run::request(&self.options(By::Balance)?, model).choice();
-                match choice {
-                    Choice::HarmonicBalance => By::Balance,
+                match run::request(&self.options(By::Balance)?, model).choice() {
+                    "harmonic balance" => By::Balance,
                     _ => By::ContactEquation,
                 }
             }

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use hertzian::stability::{Method, Projection, Sorting};
+use hertzian::stability::Method;
 use hertzian::{Branch, Complex, Error, FrequencyResponse, Point, Shooting, System};
 
 hertzian::oscillator! {
@@ -63,15 +63,15 @@ pub struct Measured {
 pub const METHODS: [(Method, &str); 7] = [
     (Method::Default, "monodromy, as many steps as needed"),
     (Method::Monodromy, "monodromy, to 1e-10"),
-    (Method::Hill(Sorting::Symmetry), "Hill, symmetry"),
-    (Method::Hill(Sorting::WeightedMean), "Hill, weighted mean"),
-    (Method::Hill(Sorting::ImaginaryPart), "Hill, imaginary part"),
+    (Method::Hill, "Hill, symmetry"),
+    (Method::HillWeightedMean, "Hill, weighted mean"),
+    (Method::HillImaginaryPart, "Hill, imaginary part"),
     (
-        Method::KoopmanHill(Projection::Direct),
+        Method::KoopmanHill,
         "Koopman-Hill, direct",
     ),
     (
-        Method::KoopmanHill(Projection::Subharmonic),
+        Method::KoopmanHillSubharmonic,
         "Koopman-Hill, subharmonic",
     ),
 ];

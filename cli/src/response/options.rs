@@ -7,7 +7,7 @@ use hertzian::HarmonicBalance;
 use hertzian::chart::View;
 use hertzian::observe::Wanted;
 use hertzian::sensitivity::Uncertain;
-use hertzian::stability::{Method, Projection, Sorting};
+use hertzian::stability::Method;
 
 use crate::look::{Axis, Look};
 use crate::misplaced::{Given, count};
@@ -328,11 +328,11 @@ impl From<Multipliers> for Method {
         match multipliers {
             Multipliers::Default => Self::Default,
             Multipliers::Monodromy => Self::Monodromy,
-            Multipliers::Hill => Self::Hill(Sorting::Symmetry),
-            Multipliers::HillImaginaryPart => Self::Hill(Sorting::ImaginaryPart),
-            Multipliers::HillWeightedMean => Self::Hill(Sorting::WeightedMean),
-            Multipliers::KoopmanHill => Self::KoopmanHill(Projection::Direct),
-            Multipliers::KoopmanHillSubharmonic => Self::KoopmanHill(Projection::Subharmonic),
+            Multipliers::Hill => Self::Hill,
+            Multipliers::HillImaginaryPart => Self::HillImaginaryPart,
+            Multipliers::HillWeightedMean => Self::HillWeightedMean,
+            Multipliers::KoopmanHill => Self::KoopmanHill,
+            Multipliers::KoopmanHillSubharmonic => Self::KoopmanHillSubharmonic,
         }
     }
 }

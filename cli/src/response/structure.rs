@@ -150,7 +150,7 @@ mod sparse {
         let path = options.structure.file.clone().unwrap_or_default();
         let whole = file::read(path).map_err(failure)?;
         let reduced = reduced(options, &whole, cancel)?;
-        let mut model = reduced.structure(&whole).map_err(Error::from)?;
+        let mut model = reduced.structure(&whole)?;
         if !options.over_frequency() {
             // An unknown name is reported by the run itself.
             let _ = model.set(options.varied(), options.range.from);

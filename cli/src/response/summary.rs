@@ -201,15 +201,12 @@ fn method(text: &mut String, options: &Options, branch: &Branch) -> fmt::Result 
     let Some((method, system)) = followed else {
         return Ok(());
     };
-    let choice = request(options, system).choice();
-    if choice.method() == method {
-        writeln!(text, "method     {choice}")
+    let request = request(options, system);
+    let choice = request.choice();
+    if choice == method {
+        writeln!(text, "method     {choice}, since {}", request.reason())
     } else {
-        writeln!(
-            text,
-            "method     {method}, in place of the {}",
-            choice.method()
-        )
+        writeln!(text, "method     {method}, in place of the {choice}")
     }
 }
 

@@ -46,7 +46,7 @@ const RESOLVED: f64 = 1e-10;
 ///     motion.batch(10)?;
 /// }
 /// // Areas shrink by the damping: per period of 2 pi, -0.2 times 2 pi.
-/// assert!((motion.exponents().sum.value + 0.2 * TAU).abs() < 1e-9);
+/// assert!((motion.sum().value + 0.2 * TAU).abs() < 1e-9);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Debug)]
@@ -60,21 +60,6 @@ pub struct Lyapunov<'s> {
     batches: Vec<Vec<f64>>,
     /// Mean integrals of the divergence over those for which it was asked for.
     integrals: Vec<Estimate>,
-}
-
-/// Lyapunov exponents.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Exponents {
-    /// Largest first, per period of the declaration. NaN for those so far below the largest that neighbours are pressed
-    /// together beyond ten decades in one application of the map, as the units of the state measure it: least where `omega` is about
-    /// one; with one coordinate, `divergence` less the largest then. Their errors are standard errors.
-    pub exponents: Vec<Estimate>,
-    /// Their sum, as the determinants of the tangent maps give it (3), with its standard error.
-    pub sum: Estimate,
-    /// Their sum, as the divergence gives it; `None` if it was not asked for. Its error is what the integral may be wrong by: rounding, and
-    /// what the nodes do not resolve.
-    pub divergence: Option<Estimate>,
 }
 
 impl<'s> Lyapunov<'s> {
@@ -96,7 +81,7 @@ impl<'s> Lyapunov<'s> {
     ///
     /// # Errors
     /// If parameters or the frequency are outside their ranges, levels are out of order, or the mass matrix is singular.
-    pub fn divergence(
+    pub fn with_divergence(
         mut self,
         system: &dyn System,
         values: &[f64],
@@ -158,11 +143,14 @@ impl<'s> Lyapunov<'s> {
         &self.state
     }
 
-    /// The exponents of all batches, which must be equally long.
-    pub fn exponents(&self) -> Exponents {
-        let all = || self.batches.iter();
+    /// The exponents of all batches, which must be equally long, with their standard errors.
+    ///
+    /// Largest first, per period of the declaration. NaN for those so far below the largest that neighbours are pressed
+    /// together beyond ten decades in one application of the map, as the units of the state measure it: least where `omega` is about
+    /// one; with one coordinate, the [divergence](Self::divergence) less the largest then.
+    pub fn exponents(&self) -> Vec<Estimate> {
         let mut exponents: Vec<Estimate> = (0..self.state.len())
-            .map(|i| Estimate::of_batches(all().map(move |batch| batch[i])))
+            .map(|i| Estimate::of_batches(self.batches.iter().map(move |batch| batch[i])))
             .collect();
         let key = |exponent: &Estimate| {
             if exponent.value.is_nan() {
@@ -172,17 +160,24 @@ impl<'s> Lyapunov<'s> {
             }
         };
         exponents.sort_by(|a, b| key(b).total_cmp(&key(a)));
+        exponents
+    }
+
+    /// Their sum, as the determinants of the tangent maps give it (3), with its standard error.
+    pub fn sum(&self) -> Estimate {
+        Estimate::of_batches(self.batches.iter().map(|batch| batch.iter().sum()))
+    }
+
+    /// Their sum, as the divergence gives it; `None` if it was not [asked for](Self::with_divergence). Its error is what the integral may be
+    /// wrong by: rounding, and what the nodes do not resolve.
+    pub fn divergence(&self) -> Option<Estimate> {
         let count = self.batches.len();
-        let mut divergence = Estimate::default();
+        let mut sum = Estimate::default();
         for integral in &self.integrals {
-            divergence.add(*integral);
+            sum.add(*integral);
         }
         let asked = count > 0 && self.integrals.len() == count;
-        Exponents {
-            exponents,
-            sum: Estimate::of_batches(all().map(|batch| batch.iter().sum())),
-            divergence: asked.then(|| divergence.over(count as f64)),
-        }
+        asked.then(|| sum.over(count as f64))
     }
 }
 
@@ -220,23 +215,38 @@ mod tests {
     use crate::testing::one_sided::one_sided;
     use crate::time::affine::Affine;
 
-    fn exponents(drive: f64, state: [f64; 2], batches: usize, periods: usize) -> Exponents {
+    /// The exponents, their sum, and the same by the divergence.
+    struct Found {
+        exponents: Vec<Estimate>,
+        sum: Estimate,
+        divergence: f64,
+    }
+
+    fn found(lyapunov: &Lyapunov<'_>) -> Found {
+        Found {
+            exponents: lyapunov.exponents(),
+            sum: lyapunov.sum(),
+            divergence: lyapunov.divergence().expect("asked for").value,
+        }
+    }
+
+    fn exponents(drive: f64, state: [f64; 2], batches: usize, periods: usize) -> Found {
         let model = one_sided(drive);
         let values = [model.zeta, model.load, model.drive];
         let flow = Affine::new(&model, &values, 1.0).expect("affine");
         let mut map = Stroboscope::new(Box::new(flow));
         let lyapunov = Lyapunov::new(&mut map, &state);
-        let mut lyapunov = lyapunov.divergence(&model, &values, 1.0).expect("a mass");
+        let mut lyapunov = lyapunov.with_divergence(&model, &values, 1.0).expect("a mass");
         lyapunov.settle(2000).expect("a motion");
         for _ in 0..batches {
             lyapunov.batch(periods).expect("a motion");
         }
-        lyapunov.exponents()
+        found(&lyapunov)
     }
 
-    fn check_sum(found: &Exponents) {
+    fn check_sum(found: &Found) {
         let sum: f64 = found.exponents.iter().map(|e| e.value).sum();
-        let divergence = found.divergence.expect("asked for").value;
+        let divergence = found.divergence;
         assert!((sum - found.sum.value).abs() < 1e-13);
         assert!(
             (found.sum.value - divergence).abs() < 1e-10,
@@ -260,15 +270,15 @@ mod tests {
         let flow = Affine::new(&model, &[5.0], 1.0).expect("affine");
         let mut map = Stroboscope::new(Box::new(flow));
         let lyapunov = Lyapunov::new(&mut map, &[0.0, 0.0]);
-        let mut lyapunov = lyapunov.divergence(&model, &[5.0], 1.0).expect("a mass");
+        let mut lyapunov = lyapunov.with_divergence(&model, &[5.0], 1.0).expect("a mass");
         lyapunov.settle(20).expect("a motion");
         lyapunov.batch(20).expect("a motion");
-        let found = lyapunov.exponents();
+        let found = found(&lyapunov);
         let root = 24.0_f64.sqrt();
         let exact = [root - 5.0, -root - 5.0].map(|rate| TAU * rate);
         assert!((found.exponents[0].value - exact[0]).abs() < 1e-12);
         assert!(found.exponents[1].value.is_nan());
-        let sum = found.divergence.expect("asked for").value;
+        let sum = found.divergence;
         assert!((sum - exact[0] - exact[1]).abs() < 1e-10);
     }
 
@@ -282,11 +292,11 @@ mod tests {
         let modulus = 0.380_774_924_593_537_2_f64.hypot(0.817_888_662_584_343_5);
         let expected = modulus.ln() / 3.0;
         for exponent in &found.exponents {
-            assert!((exponent.value - expected).abs() < 1e-3, "{found:?}");
+            assert!((exponent.value - expected).abs() < 1e-3, "{:?}", found.exponents);
         }
         assert!(
             (found.sum.value - 2.0 * expected).abs() < 1e-12,
-            "{found:?}"
+            "{:?}", found.exponents
         );
         check_sum(&found);
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::cancel::Cancel;
 use crate::error::Error;
 use crate::system::System;
-use crate::time::{self, Flow, Options};
+use crate::time::{self, Flow};
 
 /// A system, and the options of its motions.
 #[derive(Clone)]
@@ -48,12 +48,8 @@ impl Request {
     /// # Errors
     /// If one of them, the frequency or the tolerance cannot be used.
     pub(super) fn flow(&self, parameters: &[f64], omega: f64) -> Result<Box<dyn Flow>, Error> {
-        let options = Options::default().tolerance(self.tolerance);
-        time::at(
-            &self.system,
-            parameters,
-            omega,
-            options.cancel(&self.cancel),
-        )
+        let mut flow = time::at(&self.system, parameters, omega, self.tolerance)?;
+        flow.until(&self.cancel);
+        Ok(flow)
     }
 }

@@ -6,7 +6,7 @@ use crate::balance::start::{Moved, Moving};
 use crate::balance_branch::context::BranchContext;
 use crate::system::{System, Variable};
 use crate::time;
-use crate::time::{Flow, FlowError, Options, Stretch};
+use crate::time::{Flow, FlowError, Stretch};
 
 /// Tolerance of motions that only lead to a guess.
 const TOLERANCE: f64 = 1e-7;
@@ -21,15 +21,13 @@ pub(crate) fn moved(context: &BranchContext, moving: Moving<'_>) -> Moved {
         Variable::Omega => omega = moving.value,
         Variable::Parameter(index) => parameters[index] = moving.value,
     }
-    let options = Options::default()
-        .tolerance(TOLERANCE)
-        .cancel(&context.cancel);
-    let Ok(mut flow) = time::at(&context.system, &parameters, omega, options) else {
+    let Ok(mut flow) = time::at(&context.system, &parameters, omega, TOLERANCE) else {
         return Moved {
             positions: None,
             operations: 0,
         };
     };
+    flow.until(&context.cancel);
     let most =
         usize::try_from(moving.most / per_force(context.system.as_ref())).unwrap_or(usize::MAX);
     let positions = recorded(flow.as_mut(), moving, most).ok().flatten();

@@ -348,10 +348,8 @@ impl<M: OrbitMethod> Search<'_, M> {
     fn map(&self, value: f64) -> Result<Stroboscope, Error> {
         let request = &self.response.request;
         let (parameters, omega) = self.place(value)?;
-        let options = time::Options::default()
-            .tolerance(TOLERANCE)
-            .cancel(&request.cancel);
-        let flow = time::at(&request.system, &parameters, omega, options)?;
+        let mut flow = time::at(&request.system, &parameters, omega, TOLERANCE)?;
+        flow.until(&request.cancel);
         let flow = centred(flow, &request.system, &parameters, omega);
         Ok(Stroboscope::new(flow))
     }

@@ -334,13 +334,13 @@ impl<M: OrbitMethod> Bifurcations<M> {
         if let Variable::Parameter(index) = variable {
             parameters[index] = value;
         }
-        let options = time::Options::default()
-            .tolerance(SETTLED)
-            .cancel(&request.cancel);
         let basin = basin.clone().cancel(&request.cancel);
         let flows = (0..basin.threads_wanted())
-            .map(|_| time::at(&request.system, &parameters, omega, options.clone()));
-        let flows = flows.collect::<Result<_, Error>>()?;
+            .map(|_| time::at(&request.system, &parameters, omega, SETTLED));
+        let mut flows = flows.collect::<Result<Vec<_>, Error>>()?;
+        for flow in &mut flows {
+            flow.until(&request.cancel);
+        }
         let moving = Moving {
             flows,
             parameters,

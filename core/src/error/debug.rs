@@ -133,7 +133,7 @@ mod tests {
             name,
             must: "must be finite",
         };
-        let structure = StructureError::SingularMass { pivot: 0.0 };
+        let structure = Error::from(StructureError::SingularMass { pivot: 0.0 });
         let [log, basin] = [Error::from(log), Error::from(basin)];
         let sentences: [(&dyn std::fmt::Debug, &dyn std::fmt::Display); 4] = [
             (&flow, &flow),

@@ -78,9 +78,8 @@ impl From<ViewError> for Error {
 }
 
 /// Why a result is not in its file, or cannot be had from it.
-#[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum FileError {
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum FileError {
     /// A file could not be written.
     #[error("cannot write {}: {kind}", .path.display())]
     Write {
@@ -133,12 +132,8 @@ impl FileError {
     }
 }
 
-crate::error::room_error! {
-    FileError, |_| ErrorKind::File;
-    Write { path, kind }
-    Read { path, kind }
-    Truncated { path }
-    Format { path, reason }
-    Version { path, version, expected }
-    ;
+impl From<FileError> for Error {
+    fn from(error: FileError) -> Self {
+        Self::new(ErrorKind::File, error)
+    }
 }

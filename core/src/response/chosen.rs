@@ -8,8 +8,6 @@
 //! The contact equation has no equation for a system that nothing holds, may miss a first orbit, and may end where its equations fit no
 //! further orbit. There the balance is tried, which was asked for every branch before there was a choice.
 
-use std::fmt;
-
 use super::following;
 use super::otherwise::Either;
 use super::sealed::Follow;
@@ -51,7 +49,7 @@ const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 /// output](crate::FrequencyResponse::accuracy_of).
 ///
 /// ```
-/// use hertzian::{Choice, FrequencyResponse};
+/// use hertzian::FrequencyResponse;
 ///
 /// hertzian::oscillator! {
 ///     Stopped(x) {
@@ -61,7 +59,8 @@ const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 /// }
 ///
 /// let request = FrequencyResponse::of(&Stopped {}).from(0.8).to(1.2);
-/// assert_eq!(Choice::of(&Stopped {}).to_string(), "contact equation, since law `stop` opens");
+/// assert_eq!(request.choice(), "contact equation");
+/// assert_eq!(request.reason(), "law `stop` opens");
 /// assert_eq!(request.run()?.method(), Some("contact equation"));
 /// assert_eq!(request.harmonics(20).run()?.method(), Some("harmonic balance"));
 /// # Ok::<(), hertzian::Error>(())
@@ -74,10 +73,9 @@ pub struct Chosen {
     by_balance: bool,
 }
 
-/// What is chosen for a system, and why. It is shown in a few words.
+/// What is chosen for a system, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Choice {
+pub(super) enum Choice {
     /// Every force is smooth.
     HarmonicBalance,
     /// A force is not.
@@ -95,12 +93,6 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// For a system, by its laws at the values that its parameters have now, and by the tolerance that is the default.
-    /// [`FrequencyResponse::choice`](crate::FrequencyResponse::choice) knows the range of what is varied, and the tolerance.
-    pub fn of(system: &dyn System) -> Self {
-        Self::within(&Request::of(system))
-    }
-
     /// For a request, by laws at both ends of what it varies: a force that is smooth at one end, as where two stiffnesses are the same or an
     /// exponent is above one, may have a corner on the way to the other.
     pub(super) fn within(request: &Request) -> Self {
@@ -155,10 +147,22 @@ impl Choice {
     }
 
     /// The name of the method, as [`Branch::method`] has it.
-    pub fn method(&self) -> &'static str {
+    pub(super) fn method(&self) -> &'static str {
         match self {
             Self::HarmonicBalance => following::BALANCE,
             Self::ContactEquation { .. } | Self::ToManyDigits { .. } => following::EQUATION,
+        }
+    }
+
+    /// Why, in a few words.
+    pub(super) fn reason(&self) -> String {
+        match self {
+            Self::HarmonicBalance => "every force is smooth".to_owned(),
+            Self::ContactEquation { law, opens: true } => format!("law `{law}` opens"),
+            Self::ContactEquation { law, opens: false } => format!("law `{law}` has a corner"),
+            Self::ToManyDigits { law } => {
+                format!("law `{law}` has a level that matters to so many digits")
+            }
         }
     }
 }
@@ -227,25 +231,6 @@ fn differ(below: f64, above: f64) -> bool {
     let size = below.abs().max(above.abs());
     let apart = (below - above).abs();
     !apart.is_finite() || apart > ROUNDED * size
-}
-
-impl fmt::Display for Choice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let method = self.method();
-        match self {
-            Self::HarmonicBalance => write!(f, "{method}, since every force is smooth"),
-            Self::ContactEquation { law, opens: true } => {
-                write!(f, "{method}, since law `{law}` opens")
-            }
-            Self::ContactEquation { law, opens: false } => {
-                write!(f, "{method}, since law `{law}` has a corner")
-            }
-            Self::ToManyDigits { law } => write!(
-                f,
-                "{method}, since law `{law}` has a level that matters to so many digits"
-            ),
-        }
-    }
 }
 
 impl Chosen {

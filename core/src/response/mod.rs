@@ -16,7 +16,9 @@ mod resume;
 #[doc(hidden)]
 pub mod stages;
 
-pub use chosen::{Choice, Chosen};
+pub use chosen::Chosen;
+
+use chosen::Choice;
 pub use resume::Resume;
 
 use std::ops::ControlFlow;
@@ -150,11 +152,11 @@ impl FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// What laws say of the method that fits, in the range that is asked for; an option of the balance, or
-    /// [accuracy of an output](Self::accuracy_of), asks for the balance whatever they say.
+    /// The name of the method that fits by what laws say in the range that is asked for, as [`Branch::method`] has it; an option of the
+    /// balance, or [accuracy of an output](Self::accuracy_of), asks for the balance whatever they say.
     ///
     /// ```
-    /// use hertzian::{Choice, FrequencyResponse};
+    /// use hertzian::FrequencyResponse;
     ///
     /// hertzian::oscillator! {
     ///     Spring(x) {
@@ -165,13 +167,19 @@ impl FrequencyResponse {
     /// }
     ///
     /// let spring = Spring::default();
-    /// assert_eq!(Choice::of(&spring), Choice::HarmonicBalance);
     /// let request = FrequencyResponse::of(&spring).vary("pulled").omega(1.0);
-    /// let choice = request.from(1.0).to(4.0).choice();
-    /// assert_eq!(choice.to_string(), "contact equation, since law `spring` has a corner");
+    /// assert_eq!(request.choice(), "harmonic balance");
+    /// let request = request.from(1.0).to(4.0);
+    /// assert_eq!(request.choice(), "contact equation");
+    /// assert_eq!(request.reason(), "law `spring` has a corner");
     /// ```
-    pub fn choice(&self) -> Choice {
-        Choice::within(&self.request)
+    pub fn choice(&self) -> &'static str {
+        Choice::within(&self.request).method()
+    }
+
+    /// Why that is the method that fits, in a few words.
+    pub fn reason(&self) -> String {
+        Choice::within(&self.request).reason()
     }
 }
 

@@ -110,8 +110,8 @@ impl Cycle {
         tolerance: f64,
         cancel: &Cancel,
     ) -> Result<Self, Error> {
-        let options = time::Options::default().tolerance(tolerance).cancel(cancel);
-        let flow = time::at(system, values, orbit.omega, options)?;
+        let mut flow = time::at(system, values, orbit.omega, tolerance)?;
+        flow.until(cancel);
         let leaves = if flow.is_closed_form() {
             EXACT
         } else {

@@ -17,7 +17,6 @@ use crate::model::rigid::{self, Place};
 use crate::model::validate;
 use crate::system::Variable;
 use crate::time;
-use crate::time::Options;
 use crate::time::affine::Affine;
 use crate::time::centred::centred;
 
@@ -230,8 +229,8 @@ impl<'r> Asked<'r> {
         let cancel = self.request.cancel.clone();
         Source {
             make: Box::new(move |tolerance| {
-                let options = Options::default().tolerance(tolerance).cancel(&cancel);
-                let flow = time::at(&system, &parameters, omega, options)?;
+                let mut flow = time::at(&system, &parameters, omega, tolerance)?;
+                flow.until(&cancel);
                 Ok(centred(flow, &system, &parameters, omega))
             }),
             exact,

@@ -122,6 +122,10 @@ impl Flow for Centred {
         Ok(())
     }
 
+    fn until(&mut self, cancel: &Cancel) {
+        self.flow.until(cancel);
+    }
+
     fn advance(
         &mut self,
         from: f64,

@@ -53,6 +53,9 @@ pub trait Flow: Send {
     /// mass matrix would be singular. The flow is then as before.
     fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError>;
 
+    /// Ends motions when this token is cancelled, with [`FlowError::Cancelled`]: every step and every switch looks at it.
+    fn until(&mut self, cancel: &Cancel);
+
     /// Moves a state from a phase to another one, and the tangent with it; back in time if that is an earlier one. Every smooth
     /// stretch of the motion is shown to `see` once it is complete, in order and without gaps.
     ///
@@ -118,51 +121,16 @@ pub(crate) fn from_stop_to_stop<F: Flow + ?Sized>(
     flow.advance(here, to, state, Some(tangent), None)
 }
 
-/// How a flow is made.
-#[derive(Debug, Clone)]
-#[non_exhaustive]
-pub struct Options {
-    /// The error allowed in a state, relative to the largest states of the motion; from `1e-14` to `1e-2`. A closed form is
-    /// always exact to rounding.
-    pub tolerance: f64,
-    /// Ends motions when it is cancelled, which every step and every switch looks at.
-    pub cancel: Cancel,
-}
-
-impl Default for Options {
-    /// A tolerance of `1e-10`, and a token that nobody cancels.
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-10,
-            cancel: Cancel::new(),
-        }
-    }
-}
-
-impl Options {
-    hertzian_contract::setters! { self:
-        /// The error allowed in a state; see [`Options::tolerance`](#structfield.tolerance).
-        ///
-        /// ```
-        /// use hertzian::time::Options;
-        ///
-        /// let options = Options::default().tolerance(1e-7);
-        /// assert_eq!(options.tolerance, 1e-7);
-        /// ```
-        tolerance(tolerance: f64) { self.tolerance = tolerance }
-
-        /// A motion ends when this token is cancelled, with [`FlowError::Cancelled`].
-        cancel(cancel: &Cancel) { self.cancel = cancel.clone() }
-    }
-}
-
 /// The flow of a system at a frequency, at the values that its parameters have: in closed form if every force is affine on
 /// each of its pieces and nothing else varies in time, otherwise by numerical integration.
+///
+/// The tolerance is the error allowed in a state, relative to the largest states of the motion; from `1e-14` to `1e-2`. A closed form is
+/// always exact to rounding.
 ///
 /// ```
 /// use std::f64::consts::TAU;
 /// use hertzian::time;
-/// use hertzian::time::{Options, Tangent};
+/// use hertzian::time::Tangent;
 ///
 /// hertzian::oscillator! {
 ///     Contact(x) {
@@ -174,7 +142,7 @@ impl Options {
 /// }
 ///
 /// let model = Contact { zeta: 0.05, drive: 0.5 };
-/// let mut flow = time::of(&model, 0.8, Options::default())?;
+/// let mut flow = time::of(&model, 0.8, 1e-10)?;
 /// let mut state = [1.0, 0.0];
 /// for _ in 0..200 {
 ///     flow.advance(0.0, TAU, &mut state, None, None)?;
@@ -192,8 +160,8 @@ impl Options {
 /// # Errors
 /// If a parameter, the frequency or the tolerance is outside its range, the levels of a law are out of order, the mass matrix is
 /// singular, or the system has no coordinates.
-pub fn of(system: &dyn System, omega: f64, options: Options) -> Result<Box<dyn Flow>, Error> {
-    at(system, &model::values(system), omega, options)
+pub fn of(system: &dyn System, omega: f64, tolerance: f64) -> Result<Box<dyn Flow>, Error> {
+    at(system, &model::values(system), omega, tolerance)
 }
 
 /// As [`of`], at given values of the parameters.
@@ -204,14 +172,13 @@ pub fn at(
     system: &dyn System,
     values: &[f64],
     omega: f64,
-    options: Options,
+    tolerance: f64,
 ) -> Result<Box<dyn Flow>, Error> {
-    let Options { tolerance, cancel } = options;
     let system = system.shared();
     let integrated = Integrated::new(&system, values, omega, tolerance)?;
     Ok(match affine::Affine::new(&system, values, omega) {
-        Ok(affine) => Box::new(affine.until(&cancel)),
-        Err(_) => Box::new(integrated.until(&cancel)),
+        Ok(affine) => Box::new(affine),
+        Err(_) => Box::new(integrated),
     })
 }
 

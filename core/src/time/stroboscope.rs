@@ -2,10 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use super::{Flow, FlowError, Options, See, Tangent, Work};
+use super::{Flow, FlowError, See, Tangent, Work};
 use crate::error::Error;
 use crate::system::{System, Variable};
 use crate::time;
+
+/// Of the flow, where none is asked for.
+const TOLERANCE: f64 = 1e-10;
 
 /// The map from a state at one phase to the state a whole number of periods later.
 ///
@@ -52,9 +55,9 @@ impl Stroboscope {
     /// The map of a system at a frequency, at the values that its parameters have, over one period, from phase zero.
     ///
     /// # Errors
-    /// As [`time::of`], whose default tolerance it has.
+    /// As [`time::of`], with a tolerance of `1e-10`.
     pub fn of(system: &dyn System, omega: f64) -> Result<Self, Error> {
-        Ok(Self::new(time::of(system, omega, Options::default())?))
+        Ok(Self::new(time::of(system, omega, TOLERANCE)?))
     }
 
     /// The map of a flow over one period, from phase zero.

@@ -201,9 +201,8 @@ fn flows_of_unusable_values_are_refused() {
         (&VALUES, -0.9),
     ];
     for (values, omega) in refused {
-        let options = Options::default();
         let errors = [
-            at(&MODEL, values, omega, options).map(|_| ()).unwrap_err(),
+            at(&MODEL, values, omega, 1e-10).map(|_| ()).unwrap_err(),
             Affine::new(&MODEL, values, omega).map(|_| ()).unwrap_err(),
             divergence::Divergence::new(&MODEL, values, omega)
                 .map(|_| ())
@@ -288,13 +287,12 @@ fn a_cancelled_motion_stops_where_it_is() {
             flow.advance(from, to, &mut whole, None, Some(&mut record))
                 .unwrap();
             let cancel = Cancel::new();
-            let options = Options::default().tolerance(1e-13).cancel(&cancel);
             let mut flow: Box<dyn Flow> = if flow.work().forces == 0 {
-                super::at(&MODEL, &VALUES, 0.9, options).unwrap()
+                super::at(&MODEL, &VALUES, 0.9, 1e-13).unwrap()
             } else {
-                let flow = Integrated::new(&MODEL, &VALUES, 0.9, 1e-13).unwrap();
-                Box::new(flow.until(&cancel))
+                Box::new(Integrated::new(&MODEL, &VALUES, 0.9, 1e-13).unwrap())
             };
+            flow.until(&cancel);
             let (mut state, mut seen) = ([0.3, 0.1], Vec::new());
             let mut stop = |stretch: &dyn Stretch| {
                 seen.push(stretch.phases().1);

@@ -2,7 +2,7 @@
 
 use hertzian::FrequencyResponse;
 use hertzian::law::{Law, On, RateDependence};
-use hertzian::structure::{Contact, DMatrix, Structure, StructureError, Value, parameter};
+use hertzian::structure::{Contact, DMatrix, Structure, Value, parameter};
 use hertzian::system::{Bound, System, Variable};
 
 hertzian::law! {
@@ -103,36 +103,36 @@ fn square(size: usize) -> DMatrix<f64> {
     DMatrix::identity(size, size)
 }
 
-fn fails(builder: hertzian::structure::Builder) -> StructureError {
-    builder.build().expect_err("a fault")
+/// What is said of the fault.
+fn fails(builder: hertzian::structure::Builder) -> String {
+    let error = builder.build().expect_err("a fault");
+    assert_eq!(error.kind(), ErrorKind::Model);
+    error.to_string()
 }
 
 #[test]
 fn matrices_that_do_not_fit_are_said_with_numbers() {
     assert_eq!(
         fails(Structure::of(&square(2), &square(3), &square(2))),
-        StructureError::MatrixSize {
-            matrix: "damping",
-            rows: 3,
-            columns: 3,
-            coordinates: 2
-        }
+        "the damping matrix is 3 by 3; the mass matrix has 2 rows, and all must be square, of one size, and not empty"
     );
     let empty = square(0);
     let fault = fails(Structure::of(&empty, &empty, &empty));
-    assert!(matches!(fault, StructureError::MatrixSize { .. }));
+    assert!(fault.contains("matrix is 0 by 0; "), "{fault}");
     let singular = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0]);
     for mass in [singular, DMatrix::zeros(2, 2)] {
         let fault = fails(Structure::of(&mass, &square(2), &square(2)));
-        assert_eq!(fault, StructureError::SingularMass { pivot: 0.0 });
+        assert_eq!(
+            fault,
+            "the mass matrix has no inverse: its smallest pivot is 0e0 of the largest"
+        );
     }
     // In doubles the determinant of this is 1.4e-17, and its inverse finite.
     let nearly = DMatrix::from_row_slice(2, 2, &[0.1, 0.3, 0.3, 0.9]);
     let fault = fails(Structure::of(&nearly, &square(2), &square(2)));
-    assert!(
-        matches!(fault, StructureError::SingularMass { pivot } if pivot < 1e-15),
-        "{fault}"
-    );
+    assert!(fault.starts_with("the mass matrix has no inverse"));
+    let pivot = fault.split(' ').find_map(|word| word.parse::<f64>().ok());
+    assert!(pivot.is_some_and(|pivot| pivot < 1e-15), "{fault}");
     // A mass and an inertia in other units.
     let units = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 1e-20]);
     assert!(
@@ -143,44 +143,31 @@ fn matrices_that_do_not_fit_are_said_with_numbers() {
     let mut holed = square(2);
     holed[(0, 1)] = f64::INFINITY;
     let fault = fails(Structure::of(&square(2), &square(2), &holed));
-    assert!(
-        matches!(&fault, StructureError::NotFinite { value, .. } if value.is_infinite()),
-        "{fault}"
-    );
+    assert!(fault.starts_with("inf in "), "{fault}");
 }
 
 #[test]
 fn loads_and_contacts_that_do_not_fit_are_said_with_numbers() {
     for name in ["", "omega"] {
         let fault = fails(two_masses().constant(0, parameter(name, 1.0)));
-        assert!(matches!(fault, StructureError::Name { .. }), "{fault}");
+        let said = format!("a parameter cannot be called `{name}`: ");
+        assert!(fault.starts_with(&said), "{fault}");
     }
     assert_eq!(
         fails(two_masses().constant(2, 1.0)),
-        StructureError::NoCoordinate {
-            coordinate: 2,
-            coordinates: 2
-        }
+        "a load on coordinate 2, counted from zero; there are 2"
     );
     assert_eq!(
         fails(two_masses().contact(stop().direction([1.0]))),
-        StructureError::DirectionSize {
-            contact: 0,
-            entries: 1,
-            coordinates: 2
-        }
+        "a direction of contact 0 has 1 entries; there are 2 coordinates"
     );
     assert_eq!(
         fails(two_masses().contact(stop().arguments([1.0, 2.0]))),
-        StructureError::Arguments {
-            law: "Spring".to_owned(),
-            expected: 1,
-            given: 2
-        }
+        "law `Spring` has 1 arguments, and 2 were given"
     );
     let fault = fails(two_masses().contact(stop().offset(parameter("drive", 0.5))));
     assert_eq!(
-        fault.to_string(),
+        fault,
         "parameter `drive` is 0.1 in one place and 0.5 in another"
     );
 }
@@ -208,11 +195,8 @@ fn arguments_lie_in_the_ranges_of_the_law() {
     for n in [1.0, 3.0] {
         assert!(build(0.5.into(), n).is_ok());
     }
-    let range = |argument: &str, value, range: &str| StructureError::Range {
-        law: "Flanks".to_owned(),
-        argument: argument.to_owned(),
-        value,
-        range: range.to_owned(),
+    let range = |argument: &str, value: f64, range: &str| {
+        format!("argument `{argument}` of law `Flanks` is {value}, outside its range {range}")
     };
     for (play, n, expected) in [
         (0.5.into(), 3.5, range("n", 3.5, "[1, 3]")),
@@ -223,7 +207,8 @@ fn arguments_lie_in_the_ranges_of_the_law() {
             range("play", -1.0, "(0, inf)"),
         ),
     ] {
-        assert_eq!(build(play, n).err(), Some(expected));
+        let fault = build(play, n).expect_err("a fault");
+        assert_eq!(fault.to_string(), expected);
     }
     let fault = build(0.5.into(), 0.5).expect_err("a fault");
     assert_eq!(

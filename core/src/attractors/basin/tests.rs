@@ -318,6 +318,8 @@ impl Flow for Stuck {
         Ok(())
     }
 
+    fn until(&mut self, _: &Cancel) {}
+
     fn advance(
         &mut self,
         from: f64,

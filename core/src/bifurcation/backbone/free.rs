@@ -37,7 +37,6 @@ use crate::model::validate;
 use crate::system::System;
 use crate::time;
 use crate::time::MotionError;
-use crate::time::Options;
 
 /// A motion that has not come back to this part of its size is not free.
 const RETURNED: f64 = 1e-6;
@@ -236,8 +235,8 @@ impl FreeOscillation {
             return Err(ModelError::NoCoordinates.into());
         }
         let cancel = self.cancel.clone();
-        let options = Options::default().tolerance(self.tolerance).cancel(&cancel);
-        let flow = time::of(&self.system, 1.0, options)?;
+        let mut flow = time::of(&self.system, 1.0, self.tolerance)?;
+        flow.until(&cancel);
         Ok(Equations::new(flow, f64::from(facts.divisor), cancel))
     }
 

@@ -1,6 +1,7 @@
 //! A structure being described.
 
 use super::assembly::Assembly;
+use crate::error::Error;
 use super::{Contact, DMatrix, Structure, StructureError, Value};
 use crate::model::validate;
 use crate::system::{
@@ -161,7 +162,7 @@ impl Builder {
     /// let gyroscopic = DMatrix::from_row_slice(2, 2, &[0.0, 0.5, -0.5, 0.0]);
     /// let disc: Builder = Structure::of(&one, &none, &one);
     /// let disc = disc.damping(&gyroscopic, Value::from(1.0).times_omega(1)).build()?;
-    /// # Ok::<(), hertzian::structure::StructureError>(())
+    /// # Ok::<(), hertzian::Error>(())
     /// ```
     #[must_use]
     pub fn damping(mut self, matrix: &DMatrix<f64>, times: impl Into<Value>) -> Self {
@@ -179,7 +180,7 @@ impl Builder {
     ///
     /// # Errors
     /// The first thing that is wrong, with its numbers.
-    pub fn build(self) -> Result<Structure, StructureError> {
+    pub fn build(self) -> Result<Structure, Error> {
         let coordinates = self.matrices[0].nrows();
         let mut assembly = Assembly::default();
         self.assemble_matrices(&mut assembly)?;
@@ -190,7 +191,7 @@ impl Builder {
                 return Err(StructureError::NoCoordinate {
                     coordinate: row,
                     coordinates,
-                });
+                }.into());
             }
             assembly.add(Place::Load { row, wave }, value)?;
         }

@@ -1,12 +1,11 @@
 //! What can be wrong with a structure.
 
-use crate::error::ErrorKind;
+use crate::error::{Error, ErrorKind};
 use crate::numeric::decimal::Decimal;
 
 /// What is wrong with a structure.
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum StructureError {
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum StructureError {
     /// A matrix is not as many rows and columns as the structure has coordinates.
     #[error(
         "the {matrix} matrix is {rows} by {columns}; the mass matrix has {coordinates} rows, and all must be square, of one size, and not empty"
@@ -130,19 +129,8 @@ pub enum StructureError {
     },
 }
 
-crate::error::room_error! {
-    StructureError, |_| ErrorKind::Model;
-    MatrixSize { matrix, rows, columns, coordinates }
-    DirectionSize { contact, entries, coordinates }
-    NotFinite { place, value }
-    SingularMass { pivot }
-    NoCoordinate { coordinate, coordinates }
-    Arguments { law, expected, given }
-    Range { law, argument, value, range }
-    Name { parameter }
-    OutputName { output }
-    OutputSize { output, entries, coordinates }
-    NoContact { output, contact, contacts }
-    TwoValues { parameter, first, second }
-    ;
+impl From<StructureError> for Error {
+    fn from(error: StructureError) -> Self {
+        Self::new(ErrorKind::Model, error)
+    }
 }

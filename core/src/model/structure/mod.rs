@@ -12,7 +12,7 @@ pub use nalgebra::DMatrix;
 
 pub use self::builder::Builder;
 pub use self::contact::Contact;
-pub use self::error::StructureError;
+pub(crate) use self::error::StructureError;
 
 use crate::error::Error;
 use crate::law::Law;

@@ -9,7 +9,6 @@ use crate::error::{Error, chain};
 use crate::response::FrequencyResponse;
 use crate::shooting::Shooting;
 use crate::time;
-use crate::time::Options;
 use crate::time::poincare::Section;
 use crate::time::stroboscope::Stroboscope;
 
@@ -140,7 +139,7 @@ fn numbers_of_a_request() {
     ];
     refused(|&v| response().tolerance(v).run().map(drop), &tolerances);
     refused(|&v| shooting().tolerance(v).run().map(drop), &tolerances);
-    let flow = |&v: &f64| time::of(&model, 0.5, Options::default().tolerance(v)).map(drop);
+    let flow = |&v: &f64| time::of(&model, 0.5, v).map(drop);
     refused(flow, &tolerances);
     let steps = [(NAN, "largest_step = NaN"), (0.0, "largest_step = 0")];
     refused(|&v| response().largest_step(v).run().map(drop), &steps);

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use nalgebra::Complex;
 
+use super::method::Cost;
 use super::{Method, Stability};
 
 /// What a [`Method`] says of one orbit: see [`Branch::multipliers`](crate::Branch::multipliers).
@@ -34,17 +35,37 @@ pub struct Answer {
     /// stiffness and damping are smooth enough that their Fourier coefficients fall exponentially: never where a contact opens.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub bound: Option<f64>,
-    /// Evaluations of the derivatives of a contact's force at one instant, with those for the error.
-    pub slopes: usize,
-    /// Contacts whose slopes were made into Fourier coefficients, likewise.
-    pub contacts: usize,
-    /// Exponentials of a matrix, likewise.
-    pub exponentials: usize,
-    /// Matrices whose eigenvalues were computed, likewise.
-    pub spectra: usize,
-    /// Order of the largest matrix among these.
-    pub order: usize,
+    /// What it cost, both orbits together.
+    pub(crate) cost: Cost,
     /// The time that took, without that of correcting the orbit.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub elapsed: Duration,
+}
+
+/// What it cost, both orbits together.
+impl Answer {
+    /// Evaluations of the derivatives of a contact's force at one instant.
+    pub fn slopes(&self) -> usize {
+        self.cost.slopes
+    }
+
+    /// Contacts whose slopes were made into Fourier coefficients.
+    pub fn contacts(&self) -> usize {
+        self.cost.contacts
+    }
+
+    /// Exponentials of a matrix.
+    pub fn exponentials(&self) -> usize {
+        self.cost.exponentials
+    }
+
+    /// Matrices whose eigenvalues were computed.
+    pub fn spectra(&self) -> usize {
+        self.cost.spectra
+    }
+
+    /// Order of the largest matrix among these.
+    pub fn order(&self) -> usize {
+        self.cost.order
+    }
 }

@@ -189,7 +189,6 @@ impl Judge {
         // An orbit closed by integration is at the value itself.
         let moved = finer.filter(|_| self.refined.is_none());
         let moved = moved.and_then(|finer| finer.extended().last());
-        let cost = self.engine.cost();
         Answer {
             method: self.method,
             stability: stability.beside(balance.rigid()),
@@ -198,11 +197,7 @@ impl Judge {
             by_method,
             by_truncation,
             bound,
-            slopes: cost.slopes,
-            contacts: cost.contacts,
-            exponentials: cost.exponentials,
-            spectra: cost.spectra,
-            order: cost.order,
+            cost: self.engine.cost(),
             elapsed: started.elapsed(),
         }
     }

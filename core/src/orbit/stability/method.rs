@@ -7,7 +7,7 @@ use super::orbit::Orbit;
 /// A way from an orbit to its multipliers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", serde(from = "Family", into = "Family"))]
 #[non_exhaustive]
 pub enum Method {
     /// The monodromy matrix with as few steps as the verdict needs, which measurements show to be the cheapest: see
@@ -16,19 +16,66 @@ pub enum Method {
     Default,
     /// The monodromy matrix, integrated from switch to switch: the authority.
     Monodromy,
-    /// Eigenvalues of the Hill matrix. Nothing is found where it would be of an order above 4000: twice as many rows as coordinates, for
+    /// Eigenvalues of the Hill matrix: those whose eigenvectors have their weighted mean closest to the middle, but none that is a shifted copy
+    /// of another. Nothing is found where the matrix would be of an order above 4000: twice as many rows as coordinates, for
     /// the mean and each cosine and sine of the orbit, which is corrected with twice its harmonics.
+    Hill,
+    /// Of the same eigenvalues those with the smallest imaginary part by size. Two real negative multipliers can come out as one of them
+    /// twice.
+    HillImaginaryPart,
+    /// Of the same eigenvalues those whose eigenvectors have their weighted mean closest to the middle (Guillot et al. 2020), copies or not.
+    HillWeightedMean,
+    /// An exponential of the Hill matrix, with the same limit; the solution is read off it from its mean.
+    KoopmanHill,
+    /// The same, read off from all harmonics and those of half the frequency: twice the cost, and squared error where the orbit is smooth.
+    KoopmanHillSubharmonic,
+}
+
+/// The same, with what methods have in common: so they are written to files too.
+#[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+enum Family {
+    Default,
+    Monodromy,
     Hill(Sorting),
-    /// An exponential of the Hill matrix, with the same limit.
     KoopmanHill(Projection),
 }
 
+impl From<Method> for Family {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::Default => Self::Default,
+            Method::Monodromy => Self::Monodromy,
+            Method::Hill => Self::Hill(Sorting::Symmetry),
+            Method::HillImaginaryPart => Self::Hill(Sorting::ImaginaryPart),
+            Method::HillWeightedMean => Self::Hill(Sorting::WeightedMean),
+            Method::KoopmanHill => Self::KoopmanHill(Projection::Direct),
+            Method::KoopmanHillSubharmonic => Self::KoopmanHill(Projection::Subharmonic),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Family> for Method {
+    fn from(family: Family) -> Self {
+        match family {
+            Family::Default => Self::Default,
+            Family::Monodromy => Self::Monodromy,
+            Family::Hill(Sorting::Symmetry) => Self::Hill,
+            Family::Hill(Sorting::ImaginaryPart) => Self::HillImaginaryPart,
+            Family::Hill(Sorting::WeightedMean) => Self::HillWeightedMean,
+            Family::KoopmanHill(Projection::Direct) => Self::KoopmanHill,
+            Family::KoopmanHill(Projection::Subharmonic) => Self::KoopmanHillSubharmonic,
+        }
+    }
+}
+
 /// Which eigenvalues of the Hill matrix are taken for Floquet exponents.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[non_exhaustive]
-pub enum Sorting {
+pub(super) enum Sorting {
     /// Those with the smallest imaginary part by size. Two real negative multipliers can come out as one of them twice.
     ImaginaryPart,
     /// Those whose eigenvectors have their weighted mean closest to the middle (Guillot et al. 2020).
@@ -38,11 +85,10 @@ pub enum Sorting {
 }
 
 /// How the solution is read off the exponential of the Hill matrix.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[non_exhaustive]
-pub enum Projection {
+pub(super) enum Projection {
     /// From its mean.
     Direct,
     /// From all harmonics and those of half the frequency: twice the cost, and squared error where the orbit is smooth.
@@ -52,11 +98,11 @@ pub enum Projection {
 impl Method {
     /// What computes it.
     pub(crate) fn engine(self) -> Box<dyn Floquet> {
-        match self {
-            Self::Default => Box::new(super::monodromy::Monodromy::new(false)),
-            Self::Monodromy => Box::new(super::monodromy::Monodromy::new(true)),
-            Self::Hill(sorting) => Box::new(super::hill::Hill::new(sorting)),
-            Self::KoopmanHill(projection) => {
+        match Family::from(self) {
+            Family::Default => Box::new(super::monodromy::Monodromy::new(false)),
+            Family::Monodromy => Box::new(super::monodromy::Monodromy::new(true)),
+            Family::Hill(sorting) => Box::new(super::hill::Hill::new(sorting)),
+            Family::KoopmanHill(projection) => {
                 Box::new(super::koopman_hill::KoopmanHill::new(projection))
             }
         }
@@ -68,17 +114,18 @@ impl std::fmt::Display for Method {
         f.write_str(match self {
             Self::Default => "default",
             Self::Monodromy => "monodromy",
-            Self::Hill(Sorting::ImaginaryPart) => "hill-imaginary-part",
-            Self::Hill(Sorting::WeightedMean) => "hill-weighted-mean",
-            Self::Hill(Sorting::Symmetry) => "hill",
-            Self::KoopmanHill(Projection::Direct) => "koopman-hill",
-            Self::KoopmanHill(Projection::Subharmonic) => "koopman-hill-subharmonic",
+            Self::HillImaginaryPart => "hill-imaginary-part",
+            Self::HillWeightedMean => "hill-weighted-mean",
+            Self::Hill => "hill",
+            Self::KoopmanHill => "koopman-hill",
+            Self::KoopmanHillSubharmonic => "koopman-hill-subharmonic",
         })
     }
 }
 
 /// What multipliers cost.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Cost {
     /// Evaluations of the derivatives of a contact's force at one instant.
     pub(crate) slopes: usize,

@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::hill_matrix::{Coefficients, Lattice};
 use super::orbit::Orbit;
-use super::{Method, Projection, Sorting};
+use super::Method;
 use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::jacobian::Jacobian;
@@ -20,11 +20,11 @@ use crate::testing::by_hand::PowerForm;
 
 const ALL: [Method; 6] = [
     Method::Monodromy,
-    Method::Hill(Sorting::ImaginaryPart),
-    Method::Hill(Sorting::WeightedMean),
-    Method::Hill(Sorting::Symmetry),
-    Method::KoopmanHill(Projection::Direct),
-    Method::KoopmanHill(Projection::Subharmonic),
+    Method::HillImaginaryPart,
+    Method::HillWeightedMean,
+    Method::Hill,
+    Method::KoopmanHill,
+    Method::KoopmanHillSubharmonic,
 ];
 
 hertzian::oscillator! {
@@ -160,17 +160,17 @@ fn orders_at_a_jump_of_the_stiffness() {
         };
         (error(10) / error(80)).log2() / 3.0
     };
-    for sorting in [
-        Sorting::ImaginaryPart,
-        Sorting::WeightedMean,
-        Sorting::Symmetry,
+    for method in [
+        Method::HillImaginaryPart,
+        Method::HillWeightedMean,
+        Method::Hill,
     ] {
-        let order = order(Method::Hill(sorting));
-        assert!((2.5..4.0).contains(&order), "{sorting:?} {order}");
+        let order = order(method);
+        assert!((2.5..4.0).contains(&order), "{method} {order}");
     }
-    for projection in [Projection::Direct, Projection::Subharmonic] {
-        let order = order(Method::KoopmanHill(projection));
-        assert!((1.0..3.0).contains(&order), "{projection:?} {order}");
+    for method in [Method::KoopmanHill, Method::KoopmanHillSubharmonic] {
+        let order = order(method);
+        assert!((1.0..3.0).contains(&order), "{method} {order}");
     }
 }
 
@@ -189,7 +189,7 @@ fn mathieus_equation() {
         for method in ALL {
             // Without a look at copies one of two negative multipliers may come out twice; a tabulated value is off by 1e-10, and the double
             // multiplier by the square root of that.
-            let copies = [Sorting::ImaginaryPart, Sorting::WeightedMean].map(Method::Hill);
+            let copies = [Method::HillImaginaryPart, Method::HillWeightedMean];
             let allowed = if trace < 0.0 && copies.contains(&method) {
                 1e-4
             } else {
@@ -231,14 +231,14 @@ fn bounds_of_the_projection_hold_where_coefficients_fall_exponentially() {
     };
     let (exact, error, none) = multipliers(&system, Method::Monodromy, 2.0, 1);
     assert!(error < 1e-11 && none.is_none());
-    for projection in [Projection::Direct, Projection::Subharmonic] {
+    for method in [Method::KoopmanHill, Method::KoopmanHillSubharmonic] {
         let mut before = 1.0;
         for harmonics in [10, 20, 40] {
             let (found, _, bound) =
-                multipliers(&system, Method::KoopmanHill(projection), 2.0, harmonics);
+                multipliers(&system, method, 2.0, harmonics);
             let error = distance(&found, &exact);
             if let Some(bound) = bound {
-                assert!(bound < before, "{projection:?} {harmonics} {bound:e}");
+                assert!(bound < before, "{method} {harmonics} {bound:e}");
                 assert!(error < 10.0 * bound.max(1e-13), "{error:e} {bound:e}");
                 before = bound;
             }
@@ -251,7 +251,7 @@ fn bounds_of_the_projection_hold_where_coefficients_fall_exponentially() {
         below: 1.01,
         zeta: 0.1,
     };
-    let method = Method::KoopmanHill(Projection::Direct);
+    let method = Method::KoopmanHill;
     assert!(multipliers(&system, method, 2.0, 40).2.is_none());
 }
 
@@ -407,10 +407,10 @@ fn two_real_negative_multipliers() {
     };
     let (exact, ..) = multipliers(&system, Method::Monodromy, 2.0, 1);
     assert!(exact[0].re < -1.0 && exact[1].re < 0.0 && exact[1].re > -1.0);
-    let by = |sorting| multipliers(&system, Method::Hill(sorting), 2.0, 12);
-    let (found, error, _) = by(Sorting::Symmetry);
+    let by = |method| multipliers(&system, method, 2.0, 12);
+    let (found, error, _) = by(Method::Hill);
     assert!(distance(&found, &exact) < 1e-9 && error < 1e-9);
-    let (found, error, _) = by(Sorting::ImaginaryPart);
+    let (found, error, _) = by(Method::HillImaginaryPart);
     let wrong = distance(&found, &exact);
     assert!(wrong < 1e-9 || error > 0.3 * wrong, "{wrong:e} {error:e}");
 }

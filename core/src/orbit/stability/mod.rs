@@ -39,7 +39,7 @@ pub(crate) mod uncorrected;
 
 pub use crate::branches::stability::{Stability, Verdict};
 pub use answer::Answer;
-pub use method::{Method, Projection, Sorting};
+pub use method::Method;
 
 #[cfg(test)]
 mod method_tests;

@@ -54,7 +54,7 @@ mod tests {
     use nalgebra::Complex;
 
     use crate::numeric::spectrum::distance;
-    use crate::orbit::stability::{Method, Projection, Sorting, Stability, Verdict};
+    use crate::orbit::stability::{Method, Stability, Verdict};
     use crate::response::FrequencyResponse;
     use crate::system::System;
 
@@ -91,8 +91,8 @@ mod tests {
     fn at_rest_on_a_level_nothing_is_said() {
         for method in [
             Method::Default,
-            Method::Hill(Sorting::Symmetry),
-            Method::KoopmanHill(Projection::Direct),
+            Method::Hill,
+            Method::KoopmanHill,
         ] {
             let found = undriven(&Tilting { drive: 0.0 }, method);
             assert_eq!(found.verdict, Verdict::Undecided, "{method}");

@@ -106,6 +106,8 @@ impl Flow for RungeKutta {
         Ok(())
     }
 
+    fn until(&mut self, _: &Cancel) {}
+
     fn advance(
         &mut self,
         from: f64,

@@ -15,9 +15,11 @@ impl Affine {
         see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
         let (model, cancel) = (&self.model, &self.cancel);
-        let reversed = self
-            .reversed
-            .get_or_insert_with(|| Box::new(Self::of(model.reversed()).until(cancel)));
+        let reversed = self.reversed.get_or_insert_with(|| {
+            let mut flow = Box::new(Self::of(model.reversed()));
+            flow.until(cancel);
+            flow
+        });
         let before = reversed.work;
         turn(state);
         turn_all(tangent.as_deref_mut(), state.len());

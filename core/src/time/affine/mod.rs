@@ -85,18 +85,6 @@ impl Affine {
         Model::new(system, parameters, omega).map(Self::of)
     }
 
-    /// The same, and motions end when this token is cancelled.
-    #[must_use]
-    pub fn until(self, cancel: &Cancel) -> Self {
-        Self {
-            cancel: cancel.clone(),
-            // These are made anew, with the token.
-            reversed: None,
-            beside: Vec::new(),
-            ..self
-        }
-    }
-
     fn of(model: Model) -> Self {
         let (order, contacts) = (model.basis.order(), model.contacts.len());
         let most = order - 1 - model.basis.coordinates;
@@ -350,6 +338,13 @@ impl Flow for Affine {
         self.reversed
             .as_mut()
             .map_or(Ok(()), |reversed| reversed.set(variable, value))
+    }
+
+    fn until(&mut self, cancel: &Cancel) {
+        self.cancel = cancel.clone();
+        // These are made anew, with the token.
+        self.reversed = None;
+        self.beside.clear();
     }
 
     fn advance(

@@ -79,7 +79,8 @@ impl Affine {
         let known = self.beside.iter().position(|(own, _)| *own == variable);
         let index = known.unwrap_or_else(|| {
             let model = self.model.again();
-            let flow = Self::of(model).until(&self.cancel);
+            let mut flow = Self::of(model);
+            flow.until(&self.cancel);
             self.beside.push((variable, flow));
             self.beside.len() - 1
         });

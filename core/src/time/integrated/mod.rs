@@ -105,13 +105,6 @@ impl Integrated {
         };
         Ok(Self { engine })
     }
-
-    /// The same, and motions end when this token is cancelled.
-    #[must_use]
-    pub fn until(mut self, cancel: &Cancel) -> Self {
-        engine!(&mut self.engine, engine => engine.cancel = cancel.clone());
-        self
-    }
 }
 
 impl Flow for Integrated {
@@ -125,6 +118,10 @@ impl Flow for Integrated {
 
     fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
         engine!(&mut self.engine, engine => engine.set(variable, value))
+    }
+
+    fn until(&mut self, cancel: &Cancel) {
+        engine!(&mut self.engine, engine => engine.cancel = cancel.clone());
     }
 
     fn advance(

@@ -189,7 +189,7 @@ fn as_far_as_period_16() {
         drive: cycle.value,
         ..MODEL
     };
-    let mut map = Stroboscope::new(time::of(&model, 1.0, time::Options::default()).unwrap());
+    let mut map = Stroboscope::new(time::of(&model, 1.0, 1e-10).unwrap());
     let mut state = cycle.orbit.state();
     let apart = |state: &[f64]| {
         (state[0] - cycle.orbit.state()[0]).hypot(state[1] - cycle.orbit.state()[1])

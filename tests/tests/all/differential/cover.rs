@@ -17,7 +17,7 @@ use hertzian::attractors::basin::Fate;
 use hertzian::bifurcation::{Bifurcations, Diagram, Settling};
 use hertzian::generic::Declaration;
 use hertzian::time::stroboscope::Stroboscope;
-use hertzian::time::{self, Options};
+use hertzian::time;
 use hertzian::{FrequencyResponse, HarmonicBalance, Point, Shooting, Stop};
 use hertzian_tests::random::Random;
 
@@ -67,7 +67,7 @@ struct Motions {
 
 impl Motions {
     fn of(model: &Model, system: &Declaration, value: f64) -> Option<Self> {
-        let flow = time::of(system, value, Options::default().tolerance(1e-8)).ok()?;
+        let flow = time::of(system, value, 1e-8).ok()?;
         let mut units = vec![model.size; 2 * model.coordinates];
         for unit in &mut units[model.coordinates..] {
             *unit *= value;
@@ -276,8 +276,7 @@ fn covered(index: u64) -> Covered {
 
 /// Whether a motion from rest takes few evaluations of the forces.
 fn is_quick(system: &Declaration, model: &Model) -> bool {
-    let options = Options::default().tolerance(1e-8);
-    let Ok(mut flow) = time::of(system, model.range[0], options) else {
+    let Ok(mut flow) = time::of(system, model.range[0], 1e-8) else {
         return false;
     };
     let mut state = vec![0.0; 2 * model.coordinates];

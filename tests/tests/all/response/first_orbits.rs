@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use hertzian::time::stroboscope::Stroboscope;
-use hertzian::time::{self, Options, Tangent};
+use hertzian::time::{self, Tangent};
 use hertzian::{FrequencyResponse, Shooting, System};
 use hertzian_tests::random::Random;
 
@@ -418,7 +418,7 @@ hertzian::oscillator! {
 fn motions_that_cannot_begin_at_rest_begin_beside_it() {
     let steep = Steep { drive: 0.687 };
     let by_balance = FrequencyResponse::of(&steep).orbit(1467.0).unwrap();
-    let mut flow = time::of(&steep, 1467.0, Options::default()).unwrap();
+    let mut flow = time::of(&steep, 1467.0, 1e-10).unwrap();
     let mut state = [1e-6, 1e-6, 1e-6, 0.0, 0.0, 0.0];
     for _ in 0..600 {
         flow.advance(0.0, TAU, &mut state, None, None).unwrap();

@@ -176,7 +176,7 @@ fn hill_matrices_have_a_largest_order() {
         zeta: 0.1,
         drive: 1.0,
     };
-    let method = hertzian::stability::Method::Hill(hertzian::stability::Sorting::Symmetry);
+    let method = hertzian::stability::Method::Hill;
     for (harmonics, found) in [(3, true), (1200, false)] {
         let request = FrequencyResponse::of(&model).harmonics(harmonics);
         let branch = request.stability(false).from(0.5).to(0.6).max_points(2);

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use hertzian::time;
-use hertzian::time::{FlowError, Options};
+use hertzian::time::FlowError;
 use hertzian::{Complex, Event, FrequencyResponse, Point, Shooting, System};
 use hertzian_tests::random::Random;
 
@@ -59,8 +59,7 @@ pub fn distance(a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
 pub fn growth(system: &dyn System, cycle: &Point, random: &mut Random) -> Result<f64, FlowError> {
     let largest = cycle.stability.multipliers[0].norm();
     let periods = (FACTOR.ln() / largest.ln().abs()).ceil() as usize;
-    let options = Options::default().tolerance(TOLERANCE);
-    let mut flow = time::of(system, cycle.omega(), options).unwrap();
+    let mut flow = time::of(system, cycle.omega(), TOLERANCE).unwrap();
     let small = if largest < 1.0 { FACTOR * SMALL } else { SMALL };
     let [x, v] = [cycle.orbit.state()[0], cycle.orbit.state()[1]];
     let [length, speed] = [cycle.peak_to_peak(), cycle.omega() * cycle.peak_to_peak()];

@@ -1,6 +1,6 @@
 //! Where two masses with an elastic stop lose stability, by verdicts, and every method there.
 
-use hertzian::stability::{Method, Projection, Sorting};
+use hertzian::stability::Method;
 use hertzian::{Branch, FrequencyResponse, Point, Shooting, Verdict};
 use hertzian_tests::{TwoMasses, distance, nearest};
 
@@ -95,11 +95,11 @@ fn every_method_beside_the_bifurcations() {
             for method in [
                 Method::Default,
                 Method::Monodromy,
-                Method::Hill(Sorting::ImaginaryPart),
-                Method::Hill(Sorting::WeightedMean),
-                Method::Hill(Sorting::Symmetry),
-                Method::KoopmanHill(Projection::Direct),
-                Method::KoopmanHill(Projection::Subharmonic),
+                Method::HillImaginaryPart,
+                Method::HillWeightedMean,
+                Method::Hill,
+                Method::KoopmanHill,
+                Method::KoopmanHillSubharmonic,
             ] {
                 let answer = branch.multipliers(&point, method).unwrap();
                 let [plain, given] = [&answer.uncorrected, &answer.stability.multipliers]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::stability::{Method, Sorting};
+use hertzian::stability::Method;
 use hertzian::{Aft, Complex, FrequencyResponse, HarmonicBalance, Shooting, Verdict};
 
 use super::models::{answer, distance, first, linear};
@@ -35,7 +35,7 @@ fn touching_a_level_and_just_beside() {
         };
         let steps = oracle.multipliers(state, 1, 1024, Switches::Ignored);
         let sampled = first(&request.harmonics(20).aft(Aft::Sampled).samples(1024));
-        let sampled = answer(&sampled, Method::Hill(Sorting::Symmetry)).uncorrected;
+        let sampled = answer(&sampled, Method::Hill).uncorrected;
         let [steps, sampled] = [&steps[..], &sampled].map(|found| distance(found, &exact));
         let found = &branch.points[0].stability;
         let error = distance(&found.multipliers, &exact);

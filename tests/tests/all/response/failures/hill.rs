@@ -1,6 +1,6 @@
 //! Hill's method: exponents sorted by their imaginary part or by their eigenvectors, and coefficients from samples.
 
-use hertzian::stability::{Method, Sorting};
+use hertzian::stability::Method;
 use hertzian::{Aft, FrequencyResponse, Verdict};
 
 use super::models::{answer, distance, first, linear};
@@ -19,9 +19,9 @@ fn one_of_two_negative_multipliers_is_taken_twice() {
         let request = FrequencyResponse::of(&model).vary("drive").omega(1.0);
         let branch = first(&request.from(1.28).to(1.3).harmonics(harmonics));
         let [by_imaginary_part, by_weighted_mean, by_symmetry, default] = [
-            Method::Hill(Sorting::ImaginaryPart),
-            Method::Hill(Sorting::WeightedMean),
-            Method::Hill(Sorting::Symmetry),
+            Method::HillImaginaryPart,
+            Method::HillWeightedMean,
+            Method::Hill,
             Method::Default,
         ]
         .map(|method| answer(&branch, method));
@@ -65,7 +65,7 @@ fn samples_of_a_heaviside_function_leave_a_floor() {
         let corrected = distance(&answer.stability.multipliers, &exact);
         (distance(&answer.uncorrected, &exact), corrected, answer)
     };
-    let hill = Method::Hill(Sorting::Symmetry);
+    let hill = Method::Hill;
     println!(
         "harmonics, from 4096 samples, its estimate, from exact switching, default, its estimate"
     );

@@ -1,6 +1,6 @@
 //! The edges of the range: no damping, no load, many impacts in a period, small and large exponents.
 
-use hertzian::stability::{Method, Projection};
+use hertzian::stability::Method;
 use hertzian::{
     Error, FrequencyResponse, HarmonicBalance, Point, Shooting, Stability, System, Verdict,
 };
@@ -39,7 +39,7 @@ fn assert_true(name: &str, found: &Stability, exact: &Stability) {
 fn projected(system: &dyn System, omega: f64, harmonics: usize, exact: &Stability) -> [f64; 2] {
     let request = FrequencyResponse::of(system).from(omega).to(1.001 * omega);
     let branch = first(&request.harmonics(harmonics));
-    let found = answer(&branch, Method::KoopmanHill(Projection::Direct)).uncorrected;
+    let found = answer(&branch, Method::KoopmanHill).uncorrected;
     [found[0].norm() - 1.0, distance(&found, &exact.multipliers)]
 }
 

@@ -1,6 +1,6 @@
 //! Samples: folds of a force that jumps, and a stiffness that has no bound.
 
-use hertzian::stability::{Method, Sorting};
+use hertzian::stability::Method;
 use hertzian::{Aft, FrequencyResponse, Shooting, Stop};
 
 use super::models::{OneSided, answer, distance, first, linear, shown, start};
@@ -48,7 +48,7 @@ fn samples_of_an_unbounded_stiffness_are_erratic() {
         .by(Shooting::new().tolerance(1e-11))
         .near_orbit(orbit);
     let exact = exact.orbit(omega).unwrap().stability;
-    let method = Method::Hill(Sorting::Symmetry);
+    let method = Method::Hill;
     let request = request.harmonics(20);
     let hill = |request: &FrequencyResponse| {
         let branch = start(request).ok()?;

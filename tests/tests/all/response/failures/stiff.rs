@@ -1,6 +1,6 @@
 //! Koopman-Hill projection at a stiff stop.
 
-use hertzian::stability::{Method, Projection};
+use hertzian::stability::Method;
 use hertzian::{FrequencyResponse, Shooting, Verdict};
 use hertzian_tests::TwoMasses;
 
@@ -36,7 +36,7 @@ fn projection_at_a_stiff_stop() {
                 far(a).total_cmp(&far(b))
             });
             let Some(alike) = nearest else { continue };
-            let method = Method::KoopmanHill(Projection::Direct);
+            let method = Method::KoopmanHill;
             let projected = coarse.multipliers(&alike, method).unwrap();
             let by_projection = distance(&projected.uncorrected, &exact.multipliers);
             assert!(projected.bound.is_none());

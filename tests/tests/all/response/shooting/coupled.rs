@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use super::stated::assert_stated;
 use hertzian::time;
-use hertzian::time::Options;
 use hertzian::{EventKind, FrequencyResponse, Shooting, Stop, Verdict};
 use hertzian_tests::TwoMasses;
 
@@ -85,7 +84,7 @@ fn a_period_is_that_of_the_declaration() {
         .unwrap();
     assert_eq!(cycle.orbit.period, 1);
     // The phase of the flow is that of the declaration too.
-    let mut flow = time::of(&model, 0.9, Options::default()).unwrap();
+    let mut flow = time::of(&model, 0.9, 1e-10).unwrap();
     let mut state = [0.0, 0.0];
     for _ in 0..40 {
         flow.advance(0.0, TAU, &mut state, None, None).unwrap();

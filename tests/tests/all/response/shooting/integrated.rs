@@ -10,7 +10,6 @@
 use std::f64::consts::TAU;
 
 use hertzian::time;
-use hertzian::time::Options;
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Shooting, Stop, System, Verdict};
 use hertzian_tests::{Continuous, OneSided};
 
@@ -179,8 +178,7 @@ fn folds_of_figure_5() {
 
 /// The state on which the motion from a state settles: a stable orbit.
 fn settled(system: &dyn System, omega: f64, state: [f64; 2]) -> [f64; 2] {
-    let options = Options::default().tolerance(1e-7);
-    let mut flow = time::of(system, omega, options).unwrap();
+    let mut flow = time::of(system, omega, 1e-7).unwrap();
     let mut state = state;
     for _ in 0..400 {
         flow.advance(0.0, TAU, &mut state, None, None).unwrap();

@@ -4,7 +4,6 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use hertzian::time;
-use hertzian::time::Options;
 use hertzian::{FrequencyResponse, Shooting, System};
 use hertzian_tests::dormand_prince;
 
@@ -83,8 +82,7 @@ fn a_free_mass_leaves_a_stop_when_it_should() {
             let model = Free { k, alpha };
             let n = alpha + 1.0;
             let time = 2.0 * (n / (2.0 * k)).powf(1.0 / n) * quarter(n);
-            let options = Options::default().tolerance(1e-12);
-            let mut flow = time::of(&model, 1.0, options).unwrap();
+            let mut flow = time::of(&model, 1.0, 1e-12).unwrap();
             let mut state = [-1.0, 1.0];
             flow.advance(0.0, 2.0 + time, &mut state, None, None)
                 .unwrap_or_else(|error| panic!("{alpha} {k}: {error}"));
@@ -196,7 +194,7 @@ fn random_powers_agree_with_an_integration_of_their_own() {
         });
         let mut state = start;
         let system: &dyn System = &model;
-        let mut flow = time::of(system, omega, Options::default().tolerance(1e-11)).unwrap();
+        let mut flow = time::of(system, omega, 1e-11).unwrap();
         flow.advance(0.0, 2.0 * TAU, &mut state, None, None)
             .unwrap_or_else(|error| panic!("{case}: {error}, exponents {p} {q} {s}"));
         let error = (state[0] - exact[0]).abs().max((state[1] - exact[1]).abs());
