@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use hertzian::attractors::lyapunov::Lyapunov;
 use hertzian::Estimate;
+use hertzian::attractors::lyapunov::Lyapunov;
 use hertzian::chart::{Chart, Page, Series};
 
 use super::output::{Results, Table};

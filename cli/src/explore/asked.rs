@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use clap::{Parser, ValueEnum};
-use hertzian::generic::Declaration;
 use hertzian::System;
+use hertzian::generic::Declaration;
 use serde::{Deserialize, Serialize};
 
 use super::declared::Texts;
@@ -192,12 +192,10 @@ impl Asked {
     /// If it makes no options.
     pub fn method(&self, model: &dyn System) -> Result<By, Fault> {
         Ok(match self.by {
-            Method::Automatic => {
-                match run::request(&self.options(By::Balance)?, model).choice() {
-                    "harmonic balance" => By::Balance,
-                    _ => By::ContactEquation,
-                }
-            }
+            Method::Automatic => match run::request(&self.options(By::Balance)?, model).choice() {
+                "harmonic balance" => By::Balance,
+                _ => By::ContactEquation,
+            },
             Method::Balance => By::Balance,
             Method::Shooting => By::Shooting,
             Method::ContactEquation => By::ContactEquation,

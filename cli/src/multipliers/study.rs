@@ -66,14 +66,8 @@ pub const METHODS: [(Method, &str); 7] = [
     (Method::Hill, "Hill, symmetry"),
     (Method::HillWeightedMean, "Hill, weighted mean"),
     (Method::HillImaginaryPart, "Hill, imaginary part"),
-    (
-        Method::KoopmanHill,
-        "Koopman-Hill, direct",
-    ),
-    (
-        Method::KoopmanHillSubharmonic,
-        "Koopman-Hill, subharmonic",
-    ),
+    (Method::KoopmanHill, "Koopman-Hill, direct"),
+    (Method::KoopmanHillSubharmonic, "Koopman-Hill, subharmonic"),
 ];
 /// Times below the limit are the least of so many.
 const TURNS: usize = 5;

@@ -236,7 +236,9 @@ mod tests {
         let flow = Affine::new(&model, &values, 1.0).expect("affine");
         let mut map = Stroboscope::new(Box::new(flow));
         let lyapunov = Lyapunov::new(&mut map, &state);
-        let mut lyapunov = lyapunov.with_divergence(&model, &values, 1.0).expect("a mass");
+        let mut lyapunov = lyapunov
+            .with_divergence(&model, &values, 1.0)
+            .expect("a mass");
         lyapunov.settle(2000).expect("a motion");
         for _ in 0..batches {
             lyapunov.batch(periods).expect("a motion");
@@ -270,7 +272,9 @@ mod tests {
         let flow = Affine::new(&model, &[5.0], 1.0).expect("affine");
         let mut map = Stroboscope::new(Box::new(flow));
         let lyapunov = Lyapunov::new(&mut map, &[0.0, 0.0]);
-        let mut lyapunov = lyapunov.with_divergence(&model, &[5.0], 1.0).expect("a mass");
+        let mut lyapunov = lyapunov
+            .with_divergence(&model, &[5.0], 1.0)
+            .expect("a mass");
         lyapunov.settle(20).expect("a motion");
         lyapunov.batch(20).expect("a motion");
         let found = found(&lyapunov);
@@ -292,11 +296,16 @@ mod tests {
         let modulus = 0.380_774_924_593_537_2_f64.hypot(0.817_888_662_584_343_5);
         let expected = modulus.ln() / 3.0;
         for exponent in &found.exponents {
-            assert!((exponent.value - expected).abs() < 1e-3, "{:?}", found.exponents);
+            assert!(
+                (exponent.value - expected).abs() < 1e-3,
+                "{:?}",
+                found.exponents
+            );
         }
         assert!(
             (found.sum.value - 2.0 * expected).abs() < 1e-12,
-            "{:?}", found.exponents
+            "{:?}",
+            found.exponents
         );
         check_sum(&found);
     }

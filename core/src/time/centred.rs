@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use super::{Flow, FlowError, See, Tangent, Work};
+use crate::cancel::Cancel;
 use crate::model::layout::Layout;
 use crate::model::rigid::Place;
 use crate::model::rigid::centre::{Centre, Room};

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use hertzian::system::System;
 use hertzian::{
-    Branch, ContactEquation, EventKind, FrequencyResponse, HarmonicBalance, Shooting, Side,
-    Stage, Stop, Verdict,
+    Branch, ContactEquation, EventKind, FrequencyResponse, HarmonicBalance, Shooting, Side, Stage,
+    Stop, Verdict,
 };
 
 use crate::resumed::{texts, written_and_read};
@@ -209,7 +209,7 @@ fn the_range_of_a_parameter_tells_the_method() {
     ] {
         let request = FrequencyResponse::of(&Power { alpha: now }).vary("alpha");
         let request = request.omega(0.6).from(range[0]).to(range[1]);
-        assert_eq!(request.choice().method(), method, "{now} {range:?}");
+        assert_eq!(request.choice(), method, "{now} {range:?}");
         let branch = request.run().expect("a branch");
         assert_eq!(branch.method(), Some(method), "{now} {range:?}");
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use hertzian::attractors::basin::{Axis, Basin, Basins, Grid};
 use hertzian::attractors::sweep::{Sweep, Swept};
+use hertzian::error::ErrorKind;
 use hertzian::{
     Branch, Error, EventKind, FrequencyResponse, RequestError, Shooting, Side, Verdict,
 };

@@ -1,6 +1,7 @@
 //! Laws that stand alone, and structures given as matrices.
 
 use hertzian::FrequencyResponse;
+use hertzian::error::ErrorKind;
 use hertzian::law::{Law, On, RateDependence};
 use hertzian::structure::{Contact, DMatrix, Structure, Value, parameter};
 use hertzian::system::{Bound, System, Variable};

@@ -1,8 +1,8 @@
 //! A structure being described.
 
 use super::assembly::Assembly;
-use crate::error::Error;
 use super::{Contact, DMatrix, Structure, StructureError, Value};
+use crate::error::Error;
 use crate::model::validate;
 use crate::system::{
     ContactFacts, OutputFacts, ParameterFacts, Part, Place, Signal, SystemFacts, Wave,
@@ -191,7 +191,8 @@ impl Builder {
                 return Err(StructureError::NoCoordinate {
                     coordinate: row,
                     coordinates,
-                }.into());
+                }
+                .into());
             }
             assembly.add(Place::Load { row, wave }, value)?;
         }

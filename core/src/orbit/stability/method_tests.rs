@@ -6,9 +6,9 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Complex, DMatrix};
 
+use super::Method;
 use super::hill_matrix::{Coefficients, Lattice};
 use super::orbit::Orbit;
-use super::Method;
 use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::jacobian::Jacobian;
@@ -234,8 +234,7 @@ fn bounds_of_the_projection_hold_where_coefficients_fall_exponentially() {
     for method in [Method::KoopmanHill, Method::KoopmanHillSubharmonic] {
         let mut before = 1.0;
         for harmonics in [10, 20, 40] {
-            let (found, _, bound) =
-                multipliers(&system, method, 2.0, harmonics);
+            let (found, _, bound) = multipliers(&system, method, 2.0, harmonics);
             let error = distance(&found, &exact);
             if let Some(bound) = bound {
                 assert!(bound < before, "{method} {harmonics} {bound:e}");
@@ -243,7 +242,7 @@ fn bounds_of_the_projection_hold_where_coefficients_fall_exponentially() {
                 before = bound;
             }
         }
-        assert!(before < 1e-6, "{projection:?} {before:e}");
+        assert!(before < 1e-6, "{method} {before:e}");
     }
     // Where a gap crosses a level they do not fall that fast, and there is none.
     let system = TwoSlopes {

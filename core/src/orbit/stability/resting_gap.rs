@@ -89,11 +89,7 @@ mod tests {
     /// `x = 0` is a solution, and a push to the right runs away.
     #[test]
     fn at_rest_on_a_level_nothing_is_said() {
-        for method in [
-            Method::Default,
-            Method::Hill,
-            Method::KoopmanHill,
-        ] {
+        for method in [Method::Default, Method::Hill, Method::KoopmanHill] {
             let found = undriven(&Tilting { drive: 0.0 }, method);
             assert_eq!(found.verdict, Verdict::Undecided, "{method}");
             assert_eq!(found.error, f64::INFINITY, "{method}");

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::cancel::Cancel;
 use crate::system::Variable;
 use crate::time::{Flow, FlowError, See, Stretch, Tangent, Work};
 

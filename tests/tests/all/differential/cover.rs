@@ -16,8 +16,8 @@ use std::time::Instant;
 use hertzian::attractors::basin::Fate;
 use hertzian::bifurcation::{Bifurcations, Diagram, Settling};
 use hertzian::generic::Declaration;
-use hertzian::time::stroboscope::Stroboscope;
 use hertzian::time;
+use hertzian::time::stroboscope::Stroboscope;
 use hertzian::{FrequencyResponse, HarmonicBalance, Point, Shooting, Stop};
 use hertzian_tests::random::Random;
 
