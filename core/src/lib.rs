@@ -104,7 +104,7 @@ pub use balance::aft::Aft;
 pub use balance_branch::options::HarmonicBalance;
 pub use bifurcation::Bifurcations;
 pub use bifurcation::backbone;
-pub use branches::branch::{Branch, Model, Output, Parameter};
+pub use branches::branch::{Branch, Model, Named};
 pub use branches::error::OrbitError;
 pub use branches::orbit::Orbit;
 pub use branches::point::{Event, Point};

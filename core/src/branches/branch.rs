@@ -89,10 +89,10 @@ pub struct Model {
     #[cfg_attr(feature = "serde", serde(default))]
     pub units: Vec<String>,
     /// The parameters, in the order of [`Point::parameters`].
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<Named>,
     /// The outputs, in the order of their declaration.
     #[cfg_attr(feature = "serde", serde(default))]
-    pub outputs: Vec<Output>,
+    pub outputs: Vec<Named>,
     /// Names of the contacts: of their laws, with a number from one on where a law acts in several. Numbers that would give the name of an
     /// output, a coordinate or another law are left out.
     #[cfg_attr(feature = "serde", serde(default))]
@@ -104,30 +104,17 @@ pub struct Model {
     pub pieces: Vec<usize>,
 }
 
-/// A parameter of a model.
+/// A parameter or an output of a model.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct Parameter {
+pub struct Named {
     /// Its name.
     pub name: String,
     /// Its documentation.
     pub documentation: String,
     /// Its unit; empty where there is none.
     #[cfg_attr(feature = "serde", serde(default))]
-    pub unit: String,
-}
-
-/// An output of a model.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct Output {
-    /// Its name.
-    pub name: String,
-    /// Its documentation.
-    pub documentation: String,
-    /// Its unit; empty where there is none.
     pub unit: String,
 }
 
@@ -150,8 +137,8 @@ impl Model {
             equation: facts.equation.to_string(),
             coordinates: facts.coordinates.iter().map(ToString::to_string).collect(),
             units: facts.units.iter().map(ToString::to_string).collect(),
-            parameters: facts.parameters.iter().map(Parameter::of).collect(),
-            outputs: facts.outputs.iter().map(Output::of).collect(),
+            parameters: facts.parameters.iter().map(Named::parameter).collect(),
+            outputs: facts.outputs.iter().map(Named::output).collect(),
             contacts: contacts_of(system),
             force_units: measured.map(|contact| contact.unit.to_string()).collect(),
             pieces: pieces
@@ -175,18 +162,16 @@ impl Model {
     }
 }
 
-impl Parameter {
-    fn of(facts: &ParameterFacts) -> Self {
+impl Named {
+    fn parameter(facts: &ParameterFacts) -> Self {
         Self {
             name: facts.name.to_string(),
             documentation: facts.documentation.to_string(),
             unit: facts.unit.to_string(),
         }
     }
-}
 
-impl Output {
-    fn of(facts: &OutputFacts) -> Self {
+    fn output(facts: &OutputFacts) -> Self {
         Self {
             name: facts.name.to_string(),
             documentation: facts.documentation.to_string(),
