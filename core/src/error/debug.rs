@@ -2,7 +2,7 @@
 //!
 //! A program whose `main` returns a `Result` shows `{:?}` of the error, and whoever runs it is to read the sentence.
 
-/// What an enum of errors is to users: [`From`] for [`Error`](super::Error), where a function says its kind, and
+/// What a public enum of errors is to users: [`From`] for [`Error`](super::Error), where a function says its kind, and
 /// [`Debug`](std::fmt::Debug), from its variants with their fields and, after a semicolon, the variants that hold another error. One
 /// that is missing, or a field of it, does not compile.
 ///

@@ -1,7 +1,8 @@
 //! Why a computation has no answer: one type for all rooms, which holds what a room says and knows no room itself.
 //!
 //! Each room has its own enum of errors, with the numbers of each case and the sentence beside it, and writes `From` for [`Error`].
-//! What a program asks first is [`Error::kind`]; the room's enum comes back by [`Error::downcast_ref`].
+//! What a program asks first is [`Error::kind`]; an enum that is public comes back by [`Error::downcast_ref`], as those of requests, models,
+//! orbits and motions are.
 
 mod debug;
 #[cfg(feature = "serde")]

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use hertzian::attractors::basin::{Axis, Basin, Basins, Grid};
 use hertzian::attractors::sweep::{Sweep, Swept};
 use hertzian::error::ErrorKind;
+use hertzian::stability::Method;
 use hertzian::{
     Branch, Error, EventKind, FrequencyResponse, RequestError, Shooting, Side, Verdict,
 };
@@ -190,6 +191,27 @@ fn another_model_is_refused() {
             assert_eq!(name, named);
         }
         assert!(read.at(1.0).is_err());
+    }
+}
+
+/// As they are written since there are files.
+#[test]
+fn methods_of_multipliers_have_their_names_in_files() {
+    for (method, written) in [
+        (Method::Default, r#""default""#),
+        (Method::Monodromy, r#""monodromy""#),
+        (Method::Hill, r#"{"hill":"symmetry"}"#),
+        (Method::HillImaginaryPart, r#"{"hill":"imaginary-part"}"#),
+        (Method::HillWeightedMean, r#"{"hill":"weighted-mean"}"#),
+        (Method::KoopmanHill, r#"{"koopman-hill":"direct"}"#),
+        (
+            Method::KoopmanHillSubharmonic,
+            r#"{"koopman-hill":"subharmonic"}"#,
+        ),
+    ] {
+        assert_eq!(serde_json::to_string(&method).expect("text"), written);
+        let read: Method = serde_json::from_str(written).expect("a method");
+        assert_eq!(read, method);
     }
 }
 
