@@ -295,8 +295,7 @@ fn laborious(branches: &[Branch]) -> Option<String> {
 /// What is unusual about the model, at the frequency where the branch begins.
 pub(crate) fn remarks_on(branch: &Branch, model: &dyn System) -> Vec<String> {
     let omega = branch.points.first().map_or(1.0, |point| point.orbit.omega);
-    let remarks = remarks::of(model, omega).into_iter();
-    remarks.map(|remark| remark.to_string()).collect()
+    remarks::of(model, omega)
 }
 
 /// Whether everything that was asked for is there; if not, why.
