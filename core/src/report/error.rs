@@ -89,6 +89,7 @@ pub(crate) enum FileError {
         kind: io::ErrorKind,
     },
     /// A file could not be read.
+    #[cfg(feature = "serde")]
     #[error("cannot read {}: {kind}", .path.display())]
     Read {
         /// Its path.
@@ -97,12 +98,14 @@ pub(crate) enum FileError {
         kind: io::ErrorKind,
     },
     /// A file ends before what was written does.
+    #[cfg(feature = "serde")]
     #[error("{} ends early: it is a part of a file", .path.display())]
     Truncated {
         /// Its path.
         path: PathBuf,
     },
     /// A file is none of what is read from it.
+    #[cfg(feature = "serde")]
     #[error("{} is no file of this kind: {reason}", .path.display())]
     Format {
         /// Its path.
@@ -111,6 +114,7 @@ pub(crate) enum FileError {
         reason: String,
     },
     /// A file was written by another version.
+    #[cfg(feature = "serde")]
     #[error("{} is of version {version}, and files of version {expected} are read", .path.display())]
     Version {
         /// Its path.

@@ -131,6 +131,7 @@ pub(crate) enum BasinError {
     #[error(transparent)]
     Log(#[from] LogError),
     /// The threads could not be started.
+    #[cfg(feature = "parallel")]
     #[error("the system does not give {count} threads")]
     Threads {
         /// How many were asked for.
@@ -352,6 +353,7 @@ impl BasinError {
         match self {
             Self::Request { .. } => ErrorKind::Request,
             Self::Log(_) => ErrorKind::File,
+            #[cfg(feature = "parallel")]
             Self::Threads { .. } => ErrorKind::System,
             Self::Motion { .. } => ErrorKind::Motion,
         }
