@@ -3,6 +3,7 @@
 pub mod dormand_prince;
 #[path = "../../core/src/testing/random.rs"]
 pub mod random;
+pub mod reference;
 
 use hertzian::Complex;
 

@@ -1,6 +1,9 @@
 //! Structures whose modes are known.
 
-use hertzian_structure::{SparseMatrix, SparseStructure};
+use std::sync::Arc;
+
+use hertzian::structure::parameter;
+use hertzian_structure::{Direction, Load, SparseContact, SparseMatrix, SparseStructure};
 use nalgebra::DMatrix;
 
 /// A bar of unit length, stiffness and mass in equal elements, free at its end and clamped at its beginning unless it is free there too.
@@ -53,6 +56,30 @@ pub fn beam(elements: usize) -> SparseStructure {
         SparseMatrix::from_triplets(n, n, entries).unwrap()
     };
     SparseStructure::new(of(mass, h / 420.0), of(stiffness, 1.0 / h.powi(3)))
+}
+
+hertzian::law! {
+    /// An elastic stop.
+    Stop(gap, k >= 0) { gap > 0 => k*gap, else => 0 }
+}
+
+/// A force at one coordinate, a stop at another one, whose displacement is the output `stopped`.
+pub fn stopped(
+    structure: SparseStructure,
+    drive: f64,
+    k: f64,
+    distance: f64,
+    at: [usize; 2],
+) -> SparseStructure {
+    let [driven, stopped] = at.map(Direction::at);
+    structure
+        .load(Load::force(driven, parameter("drive", drive)))
+        .contact(
+            SparseContact::new("stop", Arc::new(Stop), stopped.clone())
+                .arguments([k])
+                .offset(distance),
+        )
+        .output("stopped", stopped)
 }
 
 /// The same matrix with all of its entries.

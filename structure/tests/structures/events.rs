@@ -3,38 +3,10 @@
 //! The values are from event-driven shooting with the exact flow of all modes, confirmed by the times of the switches as unknowns in 75
 //! digits and by an integrator of order eight.
 
-use std::sync::Arc;
-
-use hertzian::structure::parameter;
 use hertzian::{Branch, ContactEquation, EventKind, FrequencyResponse, OrbitMethod, Shooting};
-use hertzian_structure::{
-    Damping, Direction, Load, Reduction, SparseContact, SparseMatrix, SparseStructure,
-};
+use hertzian_structure::{Damping, Reduction, SparseMatrix, SparseStructure};
 
-use crate::common::beam;
-
-hertzian::law! {
-    /// An elastic stop.
-    Stop(gap, k >= 0) { gap > 0 => k*gap, else => 0 }
-}
-
-fn stopped(
-    structure: SparseStructure,
-    drive: f64,
-    k: f64,
-    distance: f64,
-    at: [usize; 2],
-) -> SparseStructure {
-    let [driven, stopped] = at.map(Direction::at);
-    structure
-        .load(Load::force(driven, parameter("drive", drive)))
-        .contact(
-            SparseContact::new("stop", Arc::new(Stop), stopped.clone())
-                .arguments([k])
-                .offset(distance),
-        )
-        .output("tip", stopped)
-}
+use crate::common::{beam, stopped};
 
 /// The branch, and what the reduction changes of its tip at most.
 fn branch<M: OrbitMethod>(
@@ -47,7 +19,7 @@ fn branch<M: OrbitMethod>(
     let reduced = reduction.run(structure).unwrap();
     let model = reduced.structure(structure).unwrap();
     let request = FrequencyResponse::of(&model).by(by);
-    let request = request.accuracy_of("tip").from(from).to(to);
+    let request = request.accuracy_of("stopped").from(from).to(to);
     let branch = request.run().unwrap();
     let errors = branch.events.iter().map(|event| {
         let errors = reduced.errors_at(structure, &branch, &event.point).unwrap();

@@ -5,3 +5,4 @@ mod events;
 mod files;
 mod outputs;
 mod reduction;
+mod reference;

@@ -4,10 +4,11 @@
 //! know of the balls that they are alike: the balance has the harmonics of a passage only, the others follow a passage only. What
 //! begins where the time of a passage doubles has an eighth of the declared period, and multipliers of one over all of it.
 
-use hertzian::EventKind::{Fold, PeriodDoubling};
-use hertzian::{Branch, ContactEquation, EventKind, FrequencyResponse, Shooting, Side, Verdict};
+use hertzian::EventKind::PeriodDoubling;
+use hertzian::{Branch, Complex, ContactEquation, FrequencyResponse, Shooting, Side, Verdict};
+use hertzian_tests::reference::{Accuracy, Case, touches};
 
-use super::{all_found, of_shooting};
+use super::from_either_end;
 
 hertzian::oscillator! {
     /// Balls at angles that are two fifths of those of the rotor, with a clearance.
@@ -26,20 +27,27 @@ hertzian::oscillator! {
     }
 }
 
-/// DOP853 in extended precision, confirmed by harmonic balance to 13 digits.
-const FOLDS: [(EventKind, f64); 2] = [(Fold, 0.352_318_220_738_17), (Fold, 0.358_054_523_901_42)];
-/// The same, confirmed by Hill's determinant to 11 digits.
-const UPPER: [(EventKind, f64); 1] = [(PeriodDoubling, 0.734_596_381_464_95)];
-const LOWER: [(EventKind, f64); 1] = [(PeriodDoubling, 0.664_785_786_802_24)];
+const ACCURACY: Accuracy = Accuracy {
+    of_peaks: 1e-8,
+    of_multipliers: 1e-8,
+};
 
-/// Every event of the range, one for each that is known, and none besides.
-fn all_and_no_more(branch: &Branch, known: &[(EventKind, f64)], digits: f64) {
-    all_found(&of_shooting(branch), known, digits);
-    let besides = branch.events.iter().filter(|event| {
-        let kinds = [Fold, PeriodDoubling, EventKind::BranchPoint];
-        kinds.contains(&event.kind)
-    });
-    assert_eq!(besides.count(), known.len(), "{:?}", branch.events);
+/// Where folds are, and where the passage of a ball doubles, with what their last digits leave open.
+const FOLDS: [f64; 2] = [0.35, 0.36];
+const OF_FOLDS: f64 = 1e-13;
+const UPPER: [f64; 2] = [0.7344, 0.7348];
+const LOWER: [f64; 2] = [0.6646, 0.665];
+const OF_DOUBLINGS: f64 = 1e-11;
+
+/// Every event of a range, one for each that is known, and none besides but grazings.
+fn all_and_no_more(branch: &Branch, [a, b]: [f64; 2], digits: f64) {
+    let case = Case::of("E1").within([a.min(b), a.max(b)]);
+    assert!(!case.events.is_empty());
+    let besides = case.besides(branch, digits);
+    assert!(
+        besides.iter().all(|event| touches(event.kind)),
+        "{besides:#?}"
+    );
     assert!(branch.turns.is_empty(), "{:?}", branch.turns);
     for point in &branch.points {
         assert_eq!((point.orbit.period, point.orbit.parts), (1, 16));
@@ -48,80 +56,95 @@ fn all_and_no_more(branch: &Branch, known: &[(EventKind, f64)], digits: f64) {
 
 #[test]
 fn both_folds_are_found() {
-    by_shooting([0.35, 0.36], &FOLDS, 1e-13);
-    by_shooting([0.36, 0.35], &FOLDS, 1e-13);
+    by_shooting(FOLDS, OF_FOLDS);
 }
 
 #[test]
 fn the_upper_doubling_of_a_passage_is_found() {
-    by_shooting([0.7344, 0.7348], &UPPER, 1e-11);
-    by_shooting([0.7348, 0.7344], &UPPER, 1e-11);
+    by_shooting(UPPER, OF_DOUBLINGS);
 }
 
 #[test]
 fn the_lower_doubling_of_a_passage_is_found() {
-    by_shooting([0.6646, 0.665], &LOWER, 1e-11);
-    by_shooting([0.665, 0.6646], &LOWER, 1e-11);
+    by_shooting(LOWER, OF_DOUBLINGS);
 }
 
 #[test]
 fn the_contact_equation_finds_all() {
-    for ([from, to], known, digits) in [
-        ([0.35, 0.36], &FOLDS[..], 1e-13),
-        ([0.7344, 0.7348], &UPPER[..], 1e-11),
-        ([0.6646, 0.665], &LOWER[..], 1e-11),
+    let model = Bearing { load: 1.0 };
+    let request = FrequencyResponse::of(&model).by(ContactEquation::new());
+    for (range, digits) in [
+        (FOLDS, OF_FOLDS),
+        (UPPER, OF_DOUBLINGS),
+        (LOWER, OF_DOUBLINGS),
     ] {
-        by_contact_equation([from, to], known, digits);
-        by_contact_equation([to, from], known, digits);
+        for branch in from_either_end(&request, range) {
+            all_and_no_more(&branch, range, digits);
+        }
     }
 }
 
 #[test]
 fn the_balance_finds_the_folds() {
-    let ends = [0.352, 0.3585];
-    either_way(ends, |ends| by_balance(ends, &FOLDS, 1e-13, false));
+    by_balance([0.352, 0.3585], OF_FOLDS, false);
 }
 
 #[test]
 fn the_balance_finds_the_doublings_of_a_passage() {
-    either_way([0.7348, 0.7344], |ends| {
-        by_balance(ends, &UPPER, 1e-11, true);
-    });
-    either_way([0.6646, 0.665], |ends| {
-        by_balance(ends, &LOWER, 1e-11, true);
-    });
+    let turned = |[low, high]: [f64; 2]| [high, low];
+    by_balance(turned(UPPER), OF_DOUBLINGS, true);
+    by_balance(turned(LOWER), OF_DOUBLINGS, true);
 }
 
 /// From one end of a range to the other, which takes half a minute of a core; and back, where the variable `HERTZIAN_BOTH_WAYS` is set.
-fn either_way([from, to]: [f64; 2], follow: impl Fn([f64; 2])) {
-    follow([from, to]);
+fn by_balance(range: [f64; 2], digits: f64, bifurcations: bool) {
+    let model = Bearing { load: 1.0 };
+    let request = FrequencyResponse::of(&model).stability(false);
+    let request = request.bifurcations(bifurcations);
+    let follow = |[from, to]: [f64; 2]| {
+        let branch = request.clone().from(from).to(to).run().unwrap();
+        all_and_no_more(&branch, range, digits);
+    };
+    follow(range);
     if std::env::var_os("HERTZIAN_BOTH_WAYS").is_some() {
-        follow([to, from]);
+        follow([range[1], range[0]]);
     }
 }
 
-fn by_balance(range: [f64; 2], known: &[(EventKind, f64)], digits: f64, bifurcations: bool) {
+fn by_shooting(range: [f64; 2], digits: f64) {
     let model = Bearing { load: 1.0 };
-    let request = FrequencyResponse::of(&model).from(range[0]).to(range[1]);
-    let request = request.stability(false).bifurcations(bifurcations);
-    all_and_no_more(&request.run().unwrap(), known, digits);
+    let request = FrequencyResponse::of(&model).by(Shooting::new());
+    for branch in from_either_end(&request.max_points(120), range) {
+        all_and_no_more(&branch, range, digits);
+    }
 }
 
-fn by_contact_equation([from, to]: [f64; 2], known: &[(EventKind, f64)], digits: f64) {
+/// Known are multipliers of the passage of a ball, of which those of the declared period are powers. Over all passages every ball has the largest
+/// force of all.
+#[test]
+fn orbits_are_those_that_are_known() {
     let model = Bearing { load: 1.0 };
-    let request = FrequencyResponse::of(&model).by(ContactEquation::new());
-    let branch = request.from(from).to(to).run().unwrap();
-    all_and_no_more(&branch, known, digits);
-}
-
-fn by_shooting([from, to]: [f64; 2], known: &[(EventKind, f64)], digits: f64) {
-    let model = Bearing { load: 1.0 };
-    let request = FrequencyResponse::of(&model)
-        .by(Shooting::new())
-        .from(from)
-        .to(to)
-        .max_points(120);
-    all_and_no_more(&request.run().unwrap(), known, digits);
+    let request = FrequencyResponse::of(&model);
+    for range in [[0.35, 0.36], [0.6995, 0.7005], [0.9995, 1.0005]] {
+        let mut case = Case::of("E1").within(range);
+        for orbit in &mut case.orbits {
+            let largest = orbit
+                .max_contact_force
+                .iter()
+                .fold(0.0, |m: f64, x| m.max(*x));
+            orbit.max_contact_force = vec![largest; 2];
+            for multiplier in &mut orbit.multipliers {
+                let all = Complex::new(multiplier[0], multiplier[1]).powi(16);
+                *multiplier = [all.re, all.im];
+            }
+        }
+        let request = request.clone().from(range[0]).to(range[1]);
+        let by_shooting = request.clone().by(Shooting::new()).run();
+        let by_contact_equation = request.by(ContactEquation::new()).run();
+        for branch in [by_shooting, by_contact_equation] {
+            case.assert_orbits(&branch.unwrap(), &["ball_1", "ball_4"], ACCURACY);
+        }
+    }
 }
 
 /// The orbits that begin at the upper doubling come back after two passages, an eighth of the declared period, by both methods: the same
