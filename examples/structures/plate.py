@@ -57,10 +57,16 @@ os.makedirs(folder, exist_ok=True)
 stiffness, mass = element()
 write("stiffness.mtx", stiffness, 2 * columns * (rows + 1))
 write("mass.mtx", mass, 2 * columns * (rows + 1))
-below = [i for i in range(1, columns + 1) if i * a >= length - patch - 1e-9]
-pressure = [0.5 - 0.5 * math.cos(2 * math.pi * (i * a - length + patch) / patch) for i in below]
+share = {}  # of the nodes below: the pressure, a cosine over the patch, times their hat functions
+for s in range(400):
+    across = (s + 0.5) / 400
+    at = (length - patch + patch * across) / a
+    left = min(int(at), columns - 1)
+    for i, hat in ((left, left + 1 - at), (left + 1, at - left)):
+        share[i] = share.get(i, 0.0) + hat * (1 - math.cos(2 * math.pi * across)) / 400
+below = [i for i in sorted(share) if i > 0]
 tip = [2 * node(columns, j) + 1 for j in range(rows + 1)]
 text = open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "plate.toml.in")).read()
 text = text.replace("@STOP@", str([2 * node(i, 0) + 1 for i in below])).replace("@TIP@", str(tip))
-text = text.replace("@WEIGHTS@", str([-round(p / sum(pressure), 12) for p in pressure]))
+text = text.replace("@WEIGHTS@", str([-round(share[i], 12) for i in below]))
 open(os.path.join(folder, "plate.toml"), "w").write(text)

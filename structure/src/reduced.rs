@@ -23,6 +23,9 @@ pub struct Reduced {
     pub(crate) fingerprint: u64,
     pub(crate) coordinates: usize,
     pub(crate) to: f64,
+    /// Not in files of older versions, which are told by their number.
+    #[serde(default)]
+    pub(crate) asked: Asked,
     pub(crate) modes: usize,
     /// Squares of frequencies.
     pub(crate) squares: Vec<f64>,
@@ -31,6 +34,31 @@ pub struct Reduced {
     /// Of each direction the components of the vectors along it.
     pub(crate) rows: Vec<Vec<f64>>,
     pub(crate) checked: Vec<Checked>,
+}
+
+/// What was asked of a reduction besides the frequency.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Asked {
+    pub(crate) modes: Option<usize>,
+    pub(crate) steps: Option<usize>,
+    pub(crate) tolerance: f64,
+}
+
+impl Asked {
+    /// Modes, steps and tolerance in words.
+    pub(crate) fn said(self) -> [String; 3] {
+        let modes = self.modes.map_or_else(
+            || "all modes that its frequency asks for".to_owned(),
+            |modes| format!("{modes} modes"),
+        );
+        let steps = self.steps.map_or_else(
+            || "as many steps of static vectors as the compliance asks for".to_owned(),
+            |steps| format!("{steps} steps of static vectors"),
+        );
+        let tolerance = format!("a compliance to {:e}", self.tolerance);
+        [modes, steps, tolerance]
+    }
 }
 
 /// The error of the compliance at a frequency.
@@ -81,10 +109,26 @@ pub enum ReducedError {
         "it is of another structure, or of this one before its matrices or directions were changed"
     )]
     Other,
+    /// It was made for lower frequencies.
+    #[error("it was made for frequencies up to {made}, and {asked} are asked for: remove it")]
+    Frequency {
+        /// Up to which one it was made.
+        made: f64,
+        /// Which one is asked for.
+        asked: f64,
+    },
+    /// It was made with another number of modes or steps, or to another tolerance.
+    #[error("it was made with {made}, and {asked} are asked for: remove it")]
+    Asked {
+        /// With what it was made.
+        made: String,
+        /// What is asked for.
+        asked: String,
+    },
 }
 
 impl Reduced {
-    pub(crate) const VERSION: u32 = 2;
+    pub(crate) const VERSION: u32 = 3;
 
     /// How many of its vectors are modes of the structure.
     pub fn modes(&self) -> usize {
@@ -309,6 +353,8 @@ impl Reduced {
         let ascending = self.checked.is_sorted_by(|a, b| a.frequency < b.frequency);
         (1..=m).contains(&self.modes)
             && self.to > 0.0
+            && self.asked.modes != Some(0)
+            && self.asked.tolerance > 0.0
             && mirrored(&self.damping, m, 1.0)
             && self.gyroscopic.iter().all(|g| mirrored(g, m, -1.0))
             && rows

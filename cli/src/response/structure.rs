@@ -176,26 +176,20 @@ mod sparse {
             options.model.frequency()
         };
         let own = &options.structure;
-        if let Some(path) = own.reduced.as_ref().filter(|path| path.exists()) {
-            let at = |error| failure(format!("{}: {error}", path.display()));
-            let kept = structures::Reduced::read(path).map_err(at)?;
-            kept.is_of(whole).map_err(at)?;
-            if kept.to() < to {
-                let message = format!(
-                    "{}: it was made for frequencies up to {}, and {to} are asked for: remove it",
-                    path.display(),
-                    kept.to()
-                );
-                return Err(Failure::Option(message));
-            }
-            return Ok(kept);
-        }
         let mut reduction = structures::Reduction::to(to).cancel(cancel);
         if let Some(modes) = own.modes {
             reduction = reduction.modes(modes);
         }
         if let Some(steps) = own.steps {
             reduction = reduction.steps(steps);
+        }
+        if let Some(path) = own.reduced.as_ref().filter(|path| path.exists()) {
+            let at = |error| failure(format!("{}: {error}", path.display()));
+            let kept = structures::Reduced::read(path).map_err(at)?;
+            kept.is_of(whole)
+                .and_then(|()| reduction.accepts(&kept))
+                .map_err(at)?;
+            return Ok(kept);
         }
         let reduced = reduction.run(whole).map_err(failure)?;
         if let Some(path) = &own.reduced {

@@ -32,7 +32,7 @@ pub use error::ReductionError;
 
 use crate::description::SparseStructure;
 use crate::lanczos::Basis;
-use crate::reduced::Reduced;
+use crate::reduced::{Asked, Reduced, ReducedError};
 use work::Work;
 
 /// Steps (1) at most.
@@ -46,9 +46,7 @@ const ASKED: usize = 6;
 #[derive(Debug, Clone)]
 pub struct Reduction {
     to: f64,
-    modes: Option<usize>,
-    steps: Option<usize>,
-    tolerance: f64,
+    asked: Asked,
     cancel: Cancel,
 }
 
@@ -57,9 +55,11 @@ impl Reduction {
     pub fn to(omega: f64) -> Self {
         Self {
             to: omega,
-            modes: None,
-            steps: None,
-            tolerance: 1e-6,
+            asked: Asked {
+                modes: None,
+                steps: None,
+                tolerance: 1e-6,
+            },
             cancel: Cancel::new(),
         }
     }
@@ -67,14 +67,14 @@ impl Reduction {
     /// So many modes, instead of all up to sixteen times the frequency of the excitation.
     #[must_use]
     pub fn modes(mut self, modes: usize) -> Self {
-        self.modes = Some(modes);
+        self.asked.modes = Some(modes);
         self
     }
 
     /// So many steps of static vectors, instead of as many as the tolerance asks for; none are modes alone.
     #[must_use]
     pub fn steps(mut self, steps: usize) -> Self {
-        self.steps = Some(steps);
+        self.asked.steps = Some(steps);
         self
     }
 
@@ -82,7 +82,7 @@ impl Reduction {
     /// excitation.
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
+        self.asked.tolerance = tolerance;
         self
     }
 
@@ -108,12 +108,12 @@ impl Reduction {
         let kept = squares.len();
         let mut basis = Basis::new(&structure.mass, modes);
         let mut last = work.directions.attached.clone();
-        for step in 0..self.steps.unwrap_or(MOST_STEPS) {
+        for step in 0..self.asked.steps.unwrap_or(MOST_STEPS) {
             last = work.attach(&mut basis, kept, last, step == 0)?;
-            if self.steps.is_none() && !last.is_empty() {
+            if self.asked.steps.is_none() && !last.is_empty() {
                 let reduced = work.reduced(&squares, &basis, Vec::new());
                 let error = work.checked(&reduced, MULTIPLES[ASKED - 1])?;
-                if error.relative() <= self.tolerance {
+                if error.relative() <= self.asked.tolerance {
                     break;
                 }
             }
@@ -129,14 +129,30 @@ impl Reduction {
         Ok(work.reduced(&squares, &basis, checked))
     }
 
+    /// Whether what was kept of a reduction is what this one would make, or what it would make for higher frequencies.
+    ///
+    /// # Errors
+    /// If it was made for lower frequencies, or with other options.
+    pub fn accepts(&self, kept: &Reduced) -> Result<(), ReducedError> {
+        let (made, asked) = (kept.to(), self.to);
+        if made < asked {
+            return Err(ReducedError::Frequency { made, asked });
+        }
+        let pairs = kept.asked.said().into_iter().zip(self.asked.said());
+        let mut others = pairs.filter(|(made, asked)| made != asked);
+        others.next().map_or(Ok(()), |(made, asked)| {
+            Err(ReducedError::Asked { made, asked })
+        })
+    }
+
     fn check(&self) -> Result<(), ReductionError> {
-        for (name, value) in [("omega", self.to), ("tolerance", self.tolerance)] {
+        for (name, value) in [("omega", self.to), ("tolerance", self.asked.tolerance)] {
             if !(value > 0.0 && value.is_finite()) {
                 let must = "positive and finite";
                 return Err(ReductionError::Option { name, value, must });
             }
         }
-        match self.modes {
+        match self.asked.modes {
             Some(0) => Err(ReductionError::Option {
                 name: "modes",
                 value: 0.0,

@@ -57,6 +57,7 @@ impl Work<'_> {
             fingerprint: Reduced::fingerprint_of(structure),
             coordinates: structure.coordinates(),
             to: self.options.to,
+            asked: self.options.asked,
             modes: kept,
             damping: damping(&structure.damping, &all, &|matrix| project(matrix, 1.0)),
             gyroscopic: structure

@@ -78,7 +78,7 @@ impl<'r> Work<'r> {
 
     /// How many modes are kept: all below a frequency, unless their number was asked for.
     fn count(&self) -> Result<usize, ReductionError> {
-        if let Some(modes) = self.options.modes {
+        if let Some(modes) = self.options.asked.modes {
             return Ok(modes.min(self.structure.coordinates()));
         }
         let (factor, frequency) = self.dynamic(COVERED * self.options.to)?;

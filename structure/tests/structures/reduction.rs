@@ -244,6 +244,29 @@ fn a_reduced_structure_is_kept_in_a_file() {
     std::fs::remove_file(&path).unwrap();
 }
 
+/// What was kept stands for a reduction of lower frequencies, and for none with other options.
+#[test]
+fn what_was_kept_is_that_of_the_options_it_was_made_with() {
+    let structure = driven(bar(50, false), 49);
+    let asked = || Reduction::to(3.0).modes(4).steps(2);
+    let kept = asked().run(&structure).unwrap();
+    assert!(asked().accepts(&kept).is_ok());
+    assert!(Reduction::to(1.0).modes(4).steps(2).accepts(&kept).is_ok());
+    let said = |other: Reduction| other.accepts(&kept).unwrap_err().to_string();
+    assert_eq!(
+        said(Reduction::to(4.0).modes(4).steps(2)),
+        "it was made for frequencies up to 3, and 4 are asked for: remove it"
+    );
+    assert_eq!(
+        said(asked().modes(5)),
+        "it was made with 4 modes, and 5 modes are asked for: remove it"
+    );
+    assert!(said(Reduction::to(3.0).steps(2)).contains("all modes that its frequency asks for"));
+    assert!(said(asked().steps(0)).contains("with 2 steps of static vectors, and 0 steps"));
+    assert!(said(Reduction::to(3.0).modes(4)).contains("as many steps"));
+    assert!(said(asked().tolerance(1e-3)).contains("a compliance to 1e-6"));
+}
+
 /// What was changed in a file so that its numbers do not fit each other is refused, and what is of another structure.
 #[test]
 fn a_changed_file_of_a_reduced_structure_is_refused() {
@@ -283,6 +306,8 @@ fn a_changed_file_of_a_reduced_structure_is_refused() {
         ("/modes", json!(0)),
         ("/modes", json!(100)),
         ("/to", json!(0.0)),
+        ("/asked/modes", json!(0)),
+        ("/asked/tolerance", json!(-1.0)),
         ("/checked", json!([])),
         ("/checked/0/largest", json!(-1.0)),
         ("/checked/1/frequency", json!(1e9)),

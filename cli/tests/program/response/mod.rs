@@ -2,6 +2,8 @@
 
 mod accepted;
 mod sensitive;
+#[cfg(feature = "sparse")]
+mod structure;
 mod written;
 
 use hertzian::Cancel;
