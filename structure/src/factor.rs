@@ -31,6 +31,29 @@ impl Ordering {
     }
 }
 
+/// A negative eigenvalue of a matrix with a diagonal of ones that is no rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// How many eigenvalues of a matrix are negative by more than rounding, at least one where the elimination fails: those of
+/// `A + e D`, with the diagonal `D` of `A`, and the largest entry of `A` where that is zero. Such a matrix of a positive semidefinite `A` is
+/// definite, so that its pivots are positive in any order.
+pub(crate) fn negative(matrix: &SparseMatrix) -> usize {
+    let largest = matrix.largest();
+    let own = (0..matrix.columns()).map(|i| {
+        let own = matrix.get(i, i).abs();
+        (i, i, if own > 0.0 { own } else { largest })
+    });
+    let size = matrix.columns();
+    let moved = SparseMatrix::from_triplets(size, size, own)
+        .map(|diagonal| SparseMatrix::sum(&[(1.0, matrix), (ROUNDING, &diagonal)]));
+    match moved {
+        Ok(moved) if largest > 0.0 => {
+            Factor::of(&moved, &Ordering::of(&moved)).map_or(1, |factor| factor.negative())
+        }
+        _ => 0,
+    }
+}
+
 /// Factors of a symmetric matrix.
 #[derive(Debug)]
 pub(crate) struct Factor(SparseLdlt);

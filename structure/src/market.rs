@@ -10,6 +10,10 @@ use crate::matrix::{MatrixError, SparseMatrix, can_stand};
 
 /// A line that is longer than this many bytes holds no entry.
 const LONGEST: u64 = 1024;
+/// A matrix of more rows or columns than this has at least an entry for so many of them: what is held of each, also of an empty one, follows what
+/// the file holds.
+const EMPTY: usize = 1_000_000;
+const PER_ENTRY: usize = 16;
 /// A structure of more coordinates is beyond what one factorisation can hold.
 pub const MOST_COORDINATES: usize = 20_000_000;
 
@@ -55,6 +59,18 @@ pub enum MarketError {
         rows: usize,
         /// Columns.
         columns: usize,
+    },
+    /// Nearly all of its rows or columns are empty.
+    #[error("line {line}: {rows} by {columns}, with {entries} entries: nearly all rows are empty")]
+    Empty {
+        /// Line of the sizes.
+        line: usize,
+        /// Rows.
+        rows: usize,
+        /// Columns.
+        columns: usize,
+        /// Entries.
+        entries: usize,
     },
     /// An entry cannot be part of the matrix.
     #[error("line {line}: {source}")]
@@ -212,6 +228,15 @@ pub fn read(reader: impl BufRead) -> Result<SparseMatrix, MarketError> {
         });
     }
     let triplets = entries(&mut lines, claimed, [rows, columns], mirror)?;
+    let entries = triplets.len();
+    if rows.max(columns) > EMPTY.saturating_add(PER_ENTRY.saturating_mul(entries)) {
+        return Err(MarketError::Empty {
+            line,
+            rows,
+            columns,
+            entries,
+        });
+    }
     let line = lines.number;
     SparseMatrix::from_triplets(rows, columns, triplets)
         .map_err(|source| MarketError::Entry { line, source })
@@ -342,6 +367,10 @@ mod tests {
         assert!(swapped("%%", "").starts_with("line 1:"));
         assert!(swapped("3 3 4", "3 3 1000000000").contains("says 1000000000 entries, and has 4"));
         assert!(swapped("3 3 4", "1000000000 1000000000 4").contains("at most"));
+        assert!(
+            swapped("3 3 4", "20000000 20000000 4")
+                .starts_with("line 4: 20000000 by 20000000, with 5 entries")
+        );
         assert!(swapped("3 3 4", "3 3").starts_with("line 4: `3 3`: expected numbers"));
         assert!(swapped("3 3 1.5", "").contains("has 3"));
         assert!(swapped("3 3 1.5", "3 3 1.5\n1 1 1").contains("has 5 or more"));

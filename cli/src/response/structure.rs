@@ -191,7 +191,10 @@ mod sparse {
                 .map_err(at)?;
             return Ok(kept);
         }
-        let reduced = reduction.run(whole).map_err(failure)?;
+        let described = own.file.clone().unwrap_or_default();
+        let reduced = reduction
+            .run(whole)
+            .map_err(|error| failure(format!("{}: {error}", described.display())))?;
         if let Some(path) = &own.reduced {
             reduced.write(path).map_err(failure)?;
         }

@@ -114,6 +114,14 @@ impl Files {
                     expected: "two dimensions",
                 });
             }
+            // An array without numbers may claim any number of rows.
+            if array.values.is_empty() {
+                return Err(FileError::Shape {
+                    path,
+                    shape: array.shape,
+                    expected: "a row and a column at least",
+                });
+            }
             let entries = array.values.iter().enumerate();
             let entries = entries.filter(|(_, value)| **value != 0.0);
             let entries = entries.map(|(k, &value)| (k / shape.1, k % shape.1, value));

@@ -29,6 +29,14 @@ pub enum ReductionError {
         /// How many.
         count: usize,
     },
+    /// The damping matrix has negative eigenvalues.
+    #[error(
+        "the damping matrix has {count} negative eigenvalue{}: a motion gains energy by it", if *.count == 1 { "" } else { "s" }
+    )]
+    Damping {
+        /// How many.
+        count: usize,
+    },
     /// The mass matrix has a negative eigenvalue, or none that is not zero.
     #[error("the mass matrix is not positive: a motion has no or negative kinetic energy")]
     Mass,

@@ -30,7 +30,8 @@ use hertzian::Cancel;
 
 pub use error::ReductionError;
 
-use crate::description::SparseStructure;
+use crate::description::{Damping, SparseStructure};
+use crate::factor;
 use crate::lanczos::Basis;
 use crate::reduced::{Asked, Reduced, ReducedError};
 use work::Work;
@@ -100,8 +101,14 @@ impl Reduction {
     pub fn run(&self, structure: &SparseStructure) -> Result<Reduced, ReductionError> {
         self.check()?;
         structure.check()?;
-        if structure.mass.largest() == 0.0 {
+        if structure.mass.largest() == 0.0 || factor::negative(&structure.mass) > 0 {
             return Err(ReductionError::Mass);
+        }
+        if let Damping::Matrix(matrix) = &structure.damping {
+            let count = factor::negative(matrix);
+            if count > 0 {
+                return Err(ReductionError::Damping { count });
+            }
         }
         let work = Work::new(self, structure)?;
         let (squares, modes) = work.modes()?;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use hertzian::system::System;
 use hertzian_structure::{Reduction, file};
+use proptest::prelude::*;
 
 /// A folder that is gone afterwards.
 struct Folder(PathBuf);
@@ -218,7 +219,88 @@ fn directions_may_be_arrays() {
     );
     let structure = file::read(folder.write("two.toml", &text)).unwrap();
     assert!(Reduction::to(1.0).run(&structure).is_ok());
+    // What claims rows without numbers has none.
+    let empty = |shape: &str| {
+        let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}\n");
+        let mut array = b"\x93NUMPY\x01\x00".to_vec();
+        array.extend((header.len() as u16).to_le_bytes());
+        array.extend(header.as_bytes());
+        folder.write("mass.npy", array);
+        let text = TWO.replace("mass.mtx", "mass.npy");
+        let path = folder.write("two.toml", text);
+        file::read(path).unwrap_err().to_string()
+    };
+    for shape in ["(0, 99999999999)", "(99999999999, 0)"] {
+        assert!(empty(shape).contains("a row and a column at least"));
+    }
+    folder.write("two.toml", &text);
     folder.write("both.npy", &array[..array.len() - 1]);
     let error = file::read(Path::new(&folder.0).join("two.toml")).unwrap_err();
     assert!(error.to_string().contains("after 1 of 2 numbers"));
+}
+
+/// What stands in place of a part of a text: characters of the format, and numbers that are too large.
+fn put() -> impl Strategy<Value = String> {
+    let parts = prop::sample::select(vec![
+        "",
+        "-",
+        "0",
+        "1e400",
+        "nan",
+        "[",
+        "]",
+        "{",
+        "}",
+        "=",
+        "\"",
+        "\n",
+        "9999999999",
+        "18446744073709551616",
+        "omega",
+        "first = 0",
+        "[[contact]]",
+        "[[load]]",
+        "\u{fffd}",
+        "%",
+        "gap",
+        "-drive",
+        "../",
+        ".npy",
+    ]);
+    prop::collection::vec(parts, 0..3).prop_map(|parts| parts.concat())
+}
+
+fn damaged(text: &str, at: usize, cut: usize, put: &str) -> String {
+    let boundary = |place: usize| {
+        (0..=place.min(text.len()))
+            .rev()
+            .find(|&i| text.is_char_boundary(i))
+    };
+    let (begin, end) = (boundary(at).unwrap_or(0), boundary(at + cut).unwrap_or(0));
+    format!("{}{put}{}", &text[..begin], &text[end..])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// A description or a matrix that is cut, changed or put into is read, and reduced, or refused in one sentence that begins with its file.
+    #[test]
+    fn damaged_descriptions_are_read_or_refused(which in 0..3_usize, at in 0..TWO.len(), cut in 0..30_usize, put in put()) {
+        let folder = Folder::new("damaged");
+        let path = two(&folder);
+        let (name, text) = [("two.toml", TWO), ("mass.mtx", MASS), ("stiffness.mtx", STIFFNESS)][which];
+        folder.write(name, damaged(text, at % text.len(), cut, &put));
+        let said = match file::read(&path) {
+            Ok(structure) => Reduction::to(1.0).run(&structure).err().map(|error| error.to_string()),
+            Err(error) => {
+                let said = error.to_string();
+                let place = said.trim_start_matches("cannot read ");
+                prop_assert!(place.starts_with(&folder.0.display().to_string()), "{}", said);
+                Some(said)
+            }
+        };
+        if let Some(said) = said {
+            prop_assert!(!said.contains('\n') && !said.is_empty(), "{}", said);
+        }
+    }
 }

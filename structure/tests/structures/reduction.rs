@@ -202,6 +202,32 @@ fn what_cannot_be_reduced_is_said() {
         .unwrap(),
     );
     assert_eq!(said(&pushed), ReductionError::Unstable { count: 1 });
+    // Two coordinates that are coupled by more than their own: eigenvalues 3 and -1, on a positive diagonal.
+    let coupled = || {
+        let ones = (0..20).map(|i| (i, i, 1.0));
+        let entries = ones.chain([(4, 5, 2.0), (5, 4, 2.0)]);
+        SparseMatrix::from_triplets(20, 20, entries).unwrap()
+    };
+    let of = |mass: SparseMatrix, stiffness: SparseMatrix| {
+        said(&driven(SparseStructure::new(mass, stiffness), 19))
+    };
+    assert_eq!(
+        of(sound().mass().clone(), coupled()),
+        ReductionError::Unstable { count: 1 }
+    );
+    assert_eq!(
+        of(coupled(), sound().stiffness().clone()),
+        ReductionError::Mass
+    );
+    assert_eq!(
+        said(&sound().damping(Damping::Matrix(coupled()))),
+        ReductionError::Damping { count: 1 }
+    );
+    // A damper between two coordinates has rows of zeros and an eigenvalue of zero.
+    let entries = [(4, 4, 1.0), (4, 5, -1.0), (5, 4, -1.0), (5, 5, 1.0)];
+    let damper = SparseMatrix::from_triplets(20, 20, entries).unwrap();
+    let damped = sound().damping(Damping::Matrix(damper));
+    assert!(Reduction::to(3.0).run(&damped).is_ok());
     let unsymmetric = SparseMatrix::from_triplets(20, 20, (0..20).map(|i| (i, 0, 1.0))).unwrap();
     let unsymmetric = SparseStructure::new(sound().mass().clone(), unsymmetric);
     assert!(matches!(
