@@ -22,7 +22,8 @@ use crate::differential::truth::{Question, Settles, settles};
 
 /// Points of a branch by the balance and by shooting at most.
 const POINTS: [usize; 2] = [120, 80];
-/// Time of the processor that a model may take. What is begun is ended, so that some take longer.
+/// Time of the processor that a model may take by the balance and by shooting, and as much again by the contact equation. What is begun is
+/// ended, so that some take longer.
 const BUDGET: Duration = Duration::from_secs(3);
 /// Units of time and length of the other declaration of a model.
 const UNITS: [f64; 2] = [1e5, 1e5];
@@ -198,19 +199,30 @@ impl Case {
         {
             self.whole(&DIRECTIONS, shot, &back);
         }
-        if let Some(shot) = &shot
-            && let Some(other) = self.contact_equation(system, [from, to])
+        self.clock.begun = now();
+        let other = self.contact_equation("contact equation", system, [from, to], true);
+        if let (Some(shot), Some(other)) = (&shot, &other) {
+            self.whole(&CONTACT, shot, other);
+        }
+        let name = "contact equation, backwards";
+        if let Some(other) = other
+            && let Some(back) = self.contact_equation(name, system, [to, from], false)
         {
-            self.whole(&CONTACT, shot, &other);
+            self.whole(&DIRECTIONS, &other, &back);
         }
     }
 
-    /// A branch by the contact equation.
-    fn contact_equation(&mut self, system: &Declaration, [from, to]: [f64; 2]) -> Option<Passage> {
+    /// A branch by the contact equation. Some systems have no equations, and some first orbits are not found: both are counted.
+    fn contact_equation(
+        &mut self,
+        name: &'static str,
+        system: &Declaration,
+        [from, to]: [f64; 2],
+        judge: bool,
+    ) -> Option<Passage> {
         if self.clock.flow().is_break() {
             return None;
         }
-        let name = "contact equation";
         let request = FrequencyResponse::of(system).by(ContactEquation::new());
         let request = request.from(from).to(to).max_points(POINTS[0]);
         let Ok(branch) = request.run_with(|_| self.clock.flow()) else {
@@ -220,6 +232,9 @@ impl Case {
         };
         self.report.count("branches by the contact equation");
         let passage = Passage::of(name, &branch);
+        if judge {
+            self.cycles(name, &branch);
+        }
         self.passed(&passage).then_some(passage)
     }
 
@@ -279,7 +294,7 @@ impl Case {
         self.report.count("branches by shooting");
         let passage = Passage::of(name, &branch);
         if judge {
-            self.cycles(&branch);
+            self.cycles(name, &branch);
         }
         self.passed(&passage).then_some(passage)
     }

@@ -122,6 +122,7 @@ fn both_methods_agree_with_what_is_true() {
         "peak-to-peak",
         "multipliers",
         "events, balance and shooting",
+        "events, shooting and the contact equation",
     ] {
         for (factor, share, few) in EXCEEDED {
             let Some(ratios) = sum.ratios.get(of) else {

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use hertzian::{Branch, Stability, Verdict};
+use hertzian::{Branch, Point, Stability, Verdict};
 
 use crate::differential::integrate::Lost;
 use crate::differential::judge::Case;
@@ -10,7 +10,7 @@ use crate::differential::model::{COORDINATES, State};
 use crate::differential::report::Kind;
 use crate::differential::truth::{Question, Truth, Unsure};
 
-/// Orbits of a branch by the balance and by shooting that are looked at.
+/// Orbits of a branch by the balance, and by shooting or the contact equation, that are looked at.
 const ORBITS: [usize; 2] = [3, 1];
 /// How far from the true orbit a state may be, relative to the size.
 const NEAR: f64 = 1e-2;
@@ -51,30 +51,12 @@ impl Case {
                 }
                 Ok(state)
             };
-            let stated = point.error.filter(|error| error.is_finite());
-            // Three times what is stated, of half of a peak-to-peak. Where that is infinite nothing is said of the orbit.
-            let allowed = 3.0 * 2.0 * point.error.unwrap_or(0.0);
-            let Some(truth) = self.truth(&question, state, (&name, allowed), &point.stability)
-            else {
-                continue;
-            };
-            let Some(stated) = stated else {
-                self.report.count("orbits without a stated error");
-                continue;
-            };
-            let stated = stated * point.peak_to_peak();
-            let [exact, unsure] = truth.peak_to_peak;
-            let error = (point.peak_to_peak() - exact).abs();
-            self.stated(
-                ("peak-to-peak", Kind::PeakToPeak),
-                &name,
-                [error, stated, unsure],
-            );
+            self.point(&name, &question, state, point);
         }
     }
 
-    /// Orbits by shooting.
-    pub fn cycles(&mut self, branch: &Branch) {
+    /// Orbits of which a state is kept: by shooting, and by the contact equation.
+    pub fn cycles(&mut self, method: &str, branch: &Branch) {
         let verdicts: Vec<_> = branch.points.iter().map(|c| c.stability.verdict).collect();
         let model = Rc::clone(&self.model);
         for index in self.chosen(&verdicts, ORBITS[1]) {
@@ -86,11 +68,38 @@ impl Case {
             state[COORDINATES..][..velocities.len()].copy_from_slice(velocities);
             let extremes = cycle.observed.motions.iter();
             let size = extremes.fold(0.0, |size: f64, e| size.max(0.5 * e.peak_to_peak()));
-            let name = format!("shooting at {:?}", cycle.value);
+            let name = format!("{method} at {:?}", cycle.value);
             let question = Question::of(&model, cycle.value, cycle.orbit.period, size);
             let state = |part: f64| question.after(&state, part);
-            self.truth(&question, state, (&name, 0.0), &cycle.stability);
+            self.point(&name, &question, state, cycle);
         }
+    }
+
+    /// What a point states of its orbit: that it is one, the verdict, the multipliers, the peak-to-peak.
+    fn point(
+        &mut self,
+        name: &str,
+        question: &Question<'_>,
+        state: impl Fn(f64) -> Result<State, Lost>,
+        point: &Point,
+    ) {
+        // Three times what is stated, of half of a peak-to-peak. Where that is infinite nothing is said of the orbit.
+        let allowed = 3.0 * 2.0 * point.error.unwrap_or(0.0);
+        let Some(truth) = self.truth(question, state, (name, allowed), &point.stability) else {
+            return;
+        };
+        let Some(stated) = point.error.filter(|error| error.is_finite()) else {
+            self.report.count("orbits without a stated error");
+            return;
+        };
+        let stated = stated * point.peak_to_peak();
+        let [exact, unsure] = truth.peak_to_peak;
+        let error = (point.peak_to_peak() - exact).abs();
+        self.stated(
+            ("peak-to-peak", Kind::PeakToPeak),
+            name,
+            [error, stated, unsure],
+        );
     }
 
     /// What is true of an orbit, of which such an error is stated, if it is known; the verdict and the multipliers are compared with it.
