@@ -213,6 +213,17 @@ pub(crate) trait BranchProblem {
         false
     }
 
+    /// The branch point that the step to a point beyond the end passes, where the branch ends on another one, if that is known.
+    fn joint(
+        &mut self,
+        newton: &mut Newton,
+        step: Step<'_>,
+        options: NewtonOptions,
+    ) -> Option<CurvePoint> {
+        let _ = (newton, step, options);
+        None
+    }
+
     /// Ends the branch within the step to a point beyond its end. If it only seemed to be one, the point is kept, and how it was read
     /// returned: the walk cannot be halted there for other unknowns.
     fn end(&mut self, newton: &mut Newton, step: Step<'_>, options: NewtonOptions) -> Option<Read> {

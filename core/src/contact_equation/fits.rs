@@ -136,10 +136,47 @@ impl Run<'_> {
             first - skeleton.begin,
         ];
         let around = before + after;
-        if before.min(after) < 0.2 * around && around > plan::CLOSE {
+        let meets = |way: f64| way < plan::SHORTER;
+        if before.min(after) < 0.2 * around && around > plan::CLOSE
+            || self.way_around(u).is_some_and(meets)
+        {
             return Fits::Soon;
         }
         Fits::Yes
+    }
+
+    /// The shortest way from a switch to the next one of its gap that it may meet, across the beginning: what follows comes back there, maybe with
+    /// the gaps of other contacts.
+    fn way_around(&self, u: &[f64]) -> Option<f64> {
+        if self.equations.failed {
+            return None;
+        }
+        let skeleton = &self.equations.skeleton;
+        let ways = skeleton
+            .switches
+            .iter()
+            .enumerate()
+            .filter_map(|(first, next)| {
+                let switches = &skeleton.switches[..];
+                let earlier = |switch: &Switch| switch.contact == next.contact;
+                if switches[..first].iter().any(earlier) {
+                    return None;
+                }
+                let next = self.later(next);
+                let last = switches
+                    .iter()
+                    .rposition(|switch| switch.contact == next.contact)?;
+                let way = skeleton.phase(u, first) + skeleton.length - skeleton.phase(u, last);
+                switches[last].can_meet(&next).then_some(way)
+            });
+        ways.min_by(f64::total_cmp)
+    }
+
+    /// Whether the step to these unknowns has led over the end of a stretch, or over a touch and a change of order. A shorter one ends between
+    /// them.
+    pub(super) fn is_beyond_touch(&self, u: &[f64]) -> bool {
+        let overtaken = |way: f64| way < -BACK;
+        self.equations.is_beyond_touch(u) || self.way_around(u).is_some_and(overtaken)
     }
 
     /// Whether an extreme that is watched is far from its level, or comes near another one, with which it may end.

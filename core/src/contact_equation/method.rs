@@ -342,6 +342,19 @@ impl BranchProblem for ContactBranch<'_, '_> {
         self.run.joined.is_some()
     }
 
+    fn joint(
+        &mut self,
+        newton: &mut Newton,
+        step: Step<'_>,
+        options: NewtonOptions,
+    ) -> Option<CurvePoint> {
+        if self.watched.is_empty() {
+            return None;
+        }
+        let other = step_on_other_branch(&mut self.run.equations, newton, step, options)?;
+        Search::of_joint(self, step, &other, options).place(self, newton)
+    }
+
     fn end(&mut self, newton: &mut Newton, step: Step<'_>, options: NewtonOptions) -> Option<Read> {
         let other = step_on_other_branch(&mut self.run.equations, newton, step, options)?;
         if !self.watched.is_empty() {
@@ -373,7 +386,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
         }
         // A touch is passed by equations that have the switches around it in their order. Where those of the point behind it lead nowhere, it is
         // come to from where it is watched, too.
-        let far = stuck || again && self.run.equations.is_beyond_touch(&at.u);
+        let far = stuck || again && self.run.is_beyond_touch(&at.u);
         if far && self.shortened < SHORTENED {
             self.shortened += 1;
             self.refused = 0;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::motion::{GapExtreme, Motion};
-use super::placement::Told;
+use super::placement::{Switch, Told};
 use super::run::{Run, SAME};
 use crate::branches::extreme::{Bend, Extreme};
 use crate::branches::recurrence::Recurrence;
@@ -171,6 +171,21 @@ impl Run<'_> {
     /// For every contact the one that has its gap, or the opposite, when the orbit has come back: found from the motion of the last pass.
     fn images(&self) -> &[Image] {
         self.equations.images.get_or_init(|| self.seen_images())
+    }
+
+    /// A switch where the orbit has come back, as one of the contact whose gap does so there.
+    pub(super) fn later(&self, switch: &Switch) -> Switch {
+        let Image { contact, sign } = self.images()[switch.contact];
+        if sign > 0.0 {
+            return Switch { contact, ..*switch };
+        }
+        let levels = self.equations.values.contacts[contact].levels.len();
+        Switch {
+            contact,
+            level: levels - 1 - switch.level,
+            rises: !switch.rises,
+            ..*switch
+        }
     }
 
     fn seen_images(&self) -> Vec<Image> {

@@ -51,6 +51,11 @@ impl StepControl {
         self.after_failure(step).filter(|_| step > 1e-4)
     }
 
+    /// Whether a step turned by a good part of what steps are made for.
+    pub(crate) fn turns(&self, angle: f64) -> bool {
+        angle > 0.5 * self.angle
+    }
+
     /// A step that turned by this angle is tried again.
     pub(crate) fn turns_too_far(&self, angle: f64) -> bool {
         angle > 3.0 * self.angle

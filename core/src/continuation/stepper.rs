@@ -176,7 +176,9 @@ impl Stepper {
         let shorter = match self.corrected(problem, newton, from, self.step) {
             Ok((mut point, distance)) => {
                 let mut angle = angle_between(newton.norm(), from, &point);
-                if steps.turns_too_far(angle) && steps.after_doubt(self.step).is_none() {
+                let doubtful = steps.turns_too_far(angle) && steps.after_doubt(self.step).is_none();
+                // Beside a branch point the matrix is nearly singular, and what it changes by on the way from the predictor turns its tangent.
+                if doubtful || steps.turns(angle) && newton.has_changed() {
                     retake_tangent(problem, newton, &mut point);
                     angle = angle_between(newton.norm(), from, &point);
                 }

@@ -8,7 +8,13 @@
 //! p = p_0 + c s^2 + O(s^4),      p_0 = p - s p' / (2 s') + O(s^4)                                               (1)
 //! ```
 //!
-//! where a prime is a derivative along the curve.
+//! where a prime is a derivative along the curve. Of `p_0` from two places, the nearer and the farther one,
+//!
+//! ```text
+//! p_0 = p_0n + r / (1 - r) (p_0n - p_0f) + O(s^6),      r = (s_n / s_f)^4                                        (2)
+//! ```
+//!
+//! is Richardson's extrapolation.
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, section 9.3 (generalised flip: the curve of folds of twice the
 //! period, and its order of contact).
@@ -22,6 +28,8 @@ use crate::continuation::follow::{CurvePoint, Step};
 
 /// Two differences point opposite ways if the cosine of their angle is below this.
 const OPPOSITE: f64 = -0.9;
+/// Places that are as far from the end differ by rounding, which (2) makes larger by at most so much.
+const MOST: f64 = 10.0;
 
 /// What orbits have that those of half the period have not is as good as nothing below this part of what it was.
 const NEARLY: f64 = 0.05;
@@ -126,7 +134,8 @@ impl SpecialMonitor<'_, '_> {
         true
     }
 
-    /// The degenerate doubling between two points, from the nearer one; what the other one says of it is its error.
+    /// The degenerate doubling between two points: what both say of it, extrapolated by (2). By how much they differ, or what that changes if it is
+    /// more, is the error.
     pub(super) fn end(&mut self, curve: &Curve<'_>, step: Step<'_>) {
         let seen = [step.before, step.next].map(|point| {
             let halved = HalfPeriodDifference::of(&curve.equations, &point.u)?;
@@ -135,12 +144,15 @@ impl SpecialMonitor<'_, '_> {
         let [Some(a), Some(b)] = seen else {
             return;
         };
-        let (near, far) = if a.0 < b.0 { (a.1, b.1) } else { (b.1, a.1) };
-        let size = near[0].abs().max(near[1].abs());
+        let (near, far) = if a.0 < b.0 { (a, b) } else { (b, a) };
+        let share = (near.0 / far.0).powi(4);
+        let factor = (share / (1.0 - share)).min(MOST);
+        let values = [0, 1].map(|i| near.1[i] + factor * (near.1[i] - far.1[i]));
+        let size = values[0].abs().max(values[1].abs());
         self.special.push(Special {
             kind: SpecialKind::Degenerate,
-            values: near,
-            error: apart(near, far) + ROUNDING * size,
+            values,
+            error: factor.max(1.0) * apart(near.1, far.1) + ROUNDING * size,
             after: self.points.len(),
         });
     }

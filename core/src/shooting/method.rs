@@ -217,6 +217,19 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         }
     }
 
+    fn joint(
+        &mut self,
+        newton: &mut Newton,
+        step: Step<'_>,
+        options: NewtonOptions,
+    ) -> Option<CurvePoint> {
+        if self.watched.is_empty() {
+            return None;
+        }
+        let other = step_on_other_branch(&mut self.equations, newton, step, options)?;
+        Search::of_joint(self, step, &other, options).place(self, newton)
+    }
+
     fn end(&mut self, newton: &mut Newton, step: Step<'_>, options: NewtonOptions) -> Option<Read> {
         let equations = &mut self.equations;
         let other = step_on_other_branch(equations, newton, step, options)?;

@@ -260,9 +260,9 @@ fn a_branch_is_resumed_by_what_followed_it() {
 hertzian::oscillator! {
     /// The contact equation is lost where the gap touches zero, at few digits; the law of what is far away chooses it.
     Touching(x) {
-        law spring(gap) { gap > 0 => gap^1.5, else => -(-gap)^1.5 }
+        law spring(gap) { gap > 0 => gap^1.8, else => -(-gap)^1.8 }
         law far(gap) { gap > 0 => gap, else => 0 }
-        ddot(x) + 0.064*dot(x) + spring(x) + far(x - 100) = 0.1*cos(omega*t) + 1;
+        ddot(x) + 0.02*dot(x) + spring(x) + far(x - 100) = 0.3*cos(omega*t) + 1;
     }
 }
 
@@ -331,7 +331,7 @@ fn a_branch_that_is_kept_has_the_balance_to_fall_back_on() {
     let kept = request.clone().keep(&path);
     let ended = kept.run().expect("a branch");
     assert!(texts(&ended) == texts(&whole));
-    assert_eq!(Branch::read(&path).expect("read"), ended);
+    assert!(texts(&Branch::read(&path).expect("read")) == texts(&ended));
     for (stage, points) in INTERRUPTED {
         let mut killed = None;
         let part = kept.run_with(|progress| {
@@ -342,7 +342,7 @@ fn a_branch_that_is_kept_has_the_balance_to_fall_back_on() {
             }
             ControlFlow::Continue(())
         });
-        assert_eq!(Branch::read(&path).expect("read"), part.expect("a part"));
+        assert!(texts(&Branch::read(&path).expect("read")) == texts(&part.expect("a part")));
         let ended = std::fs::read(&path).expect("a file");
         // As it has ended, and as it is where the program is killed at that moment.
         for text in [Some(ended), killed].into_iter().flatten() {
@@ -351,7 +351,7 @@ fn a_branch_that_is_kept_has_the_balance_to_fall_back_on() {
             read.attach(&Touching {}).expect("its model");
             let resumed = read.resume().keep(&path).run().expect("a branch");
             assert!(texts(&resumed) == texts(&whole), "{stage} {points}");
-            assert_eq!(Branch::read(&path).expect("read"), resumed);
+            assert!(texts(&Branch::read(&path).expect("read")) == texts(&resumed));
         }
     }
     std::fs::remove_file(path).expect("removed");

@@ -56,7 +56,21 @@ pub(super) fn on_the_way(
     passage: Passage,
     options: NewtonOptions,
 ) -> Option<Reached> {
-    let Passage { before, next } = passage;
+    // As near as rounding allows, or else as near as touches.
+    [ROUNDED * AIM, TOUCHES]
+        .into_iter()
+        .find_map(|aim| on_the_way_to(problem, newton, step, passage, aim, options))
+}
+
+/// The same, where it comes that near to its level.
+fn on_the_way_to(
+    problem: &mut dyn BranchProblem,
+    newton: &mut Newton,
+    step: Step<'_>,
+    Passage { before, next }: Passage,
+    aim: f64,
+    options: NewtonOptions,
+) -> Option<Reached> {
     let [from, to] = step.parameters();
     let mut extremes = Vec::new();
     let mut extreme = before;
@@ -68,14 +82,14 @@ pub(super) fn on_the_way(
             found.above
         })
     };
-    let aim = Aim::Below(TOUCHES);
-    let root = root(problem, newton, step, options, aim, above)?;
-    let located = root.located.vanishes.then_some(root.located)?;
-    Some(Reached {
-        located,
+    let root = root(problem, newton, step, options, Aim::Below(aim), above)?;
+    let left = root.located.test.abs();
+    let rate = ((to - from) / (next.above - before.above)).abs();
+    (left <= TOUCHES).then_some(Reached {
+        located: root.located,
         extreme,
-        error: root.error,
-        rate: ((to - from) / (next.above - before.above)).abs(),
+        error: root.error + ROUNDED * left * rate,
+        rate,
     })
 }
 

@@ -16,7 +16,8 @@
 //! 3. A step that [leaps](leap) over two folds is made again, shorter.
 //! 4. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
 //! 5. What events that were located [hide](counted) is looked for beside them.
-//! 6. Where an extreme of a gap goes through a level, the orbit that [touches](touch) it is located, and what test functions show there and at no end
+//! 6. A step onto a branch of more regular orbits is made again up to shortly before the [joint] of both.
+//! 7. Where an extreme of a gap goes through a level, the orbit that [touches](touch) it is located, and what test functions show there and at no end
 //!    of the step is recorded.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions); Keller
@@ -30,6 +31,7 @@ mod counted;
 mod explained;
 mod inside;
 mod inside_touch;
+mod joint;
 mod leap;
 mod meeting;
 mod narrow;
@@ -41,6 +43,7 @@ mod walk;
 mod zero;
 
 use explained::Bent;
+use joint::Joint;
 use seen::{Seen, changes, is_modulus};
 use touch::Gaps;
 use walk::Looked;
@@ -88,6 +91,10 @@ struct Engine {
     passed: Option<CurvePoint>,
     /// The point before the last one, to go on from in a step of this length, since the last one is not the next on the branch.
     back: Option<(CurvePoint, f64)>,
+    /// The branch point that the last step passed, which is made again.
+    joint: Option<Joint>,
+    /// Where the branch ends within the last step.
+    end: Option<CurvePoint>,
     /// The last points with the extremes of their gaps.
     gaps: Vec<Gaps>,
     /// The last point with the extremes of the gaps whose laws may have narrow places.
@@ -235,6 +242,8 @@ impl Engine {
             looked: None,
             passed: None,
             back: None,
+            joint: None,
+            end: None,
             gaps: Vec::new(),
             plain: None,
             touched: Vec::new(),
@@ -336,6 +345,10 @@ impl Engine {
         step: Step<'_>,
     ) -> Continue {
         if self.beyond {
+            if self.comes_nearer(problem, newton, step) {
+                self.beyond = false;
+                return Continue::Break(Halt::Resize);
+            }
             let Some(read) = problem.end(newton, step, self.options.newton) else {
                 return Continue::Break(Halt::Stop);
             };
@@ -344,11 +357,16 @@ impl Engine {
                 return Continue::Break(Halt::Stop);
             }
         }
+        let after = problem.points() - 1;
         let turned = self.events(problem, newton, step);
         if self.ended.is_none() {
-            self.touches(problem, newton, step, turned);
+            self.touches(problem, newton, step, turned, after);
             self.place_turns(problem);
             self.explain_verdict(problem);
+        } else if let Some(end) = self.end.take() {
+            let before = step.before;
+            let step = Step { before, next: &end };
+            self.touches(problem, newton, step, turned, after);
         }
         if self.ended.is_some() {
             Continue::Break(Halt::Stop)

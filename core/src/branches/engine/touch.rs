@@ -2,7 +2,7 @@
 //!
 //! An extreme that is on the other side of its level at the other end of a step has touched it in between. Extremes that went there and
 //! back are looked for [inside](super::inside_touch), and where extremes appear or disappear near a level, or level crossings do that no
-//! extreme explains, the step is halved. Each touch is located by [approaching](super::approach) it.
+//! extreme explains, or a touch is not located, the step is halved. Each touch is located by [approaching](super::approach) it.
 
 use super::Engine;
 use super::approach::{Approach, Reached, on_the_way};
@@ -70,13 +70,14 @@ impl Gaps {
 }
 
 impl Engine {
-    /// Where extremes of gaps reach levels in a step, and whether that is where the branch `turned` back without a fold.
+    /// Where extremes of gaps reach levels in a step behind so many points, and whether that is where the branch `turned` back without a fold.
     pub(super) fn touches(
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         step: Step<'_>,
         turned: Option<Turn>,
+        after: usize,
     ) {
         if !problem.seeks_touches() {
             return;
@@ -88,7 +89,6 @@ impl Engine {
         let [Some(before), Some(next)] = ends else {
             return;
         };
-        let after = problem.points() - 1;
         let touched = std::mem::take(&mut self.touched);
         let mut parts = vec![before.clone(), next.clone()];
         let steps = earlier.and_then(|earlier| Steps::new(newton, [earlier, before, next]));
@@ -105,7 +105,7 @@ impl Engine {
                 search.between_all(problem, newton, &earlier);
                 self.bent.append(&mut search.bent);
                 let orbits = std::mem::take(&mut search.orbits);
-                self.beside_touches(problem, newton, orbits, 2);
+                self.beside_touches(problem, newton, orbits, 2, after - 1);
                 if self.ended.is_some() {
                     return;
                 }
@@ -117,7 +117,7 @@ impl Engine {
         search.between_all(problem, newton, &parts);
         self.touched = search.found;
         self.bent.append(&mut search.bent);
-        self.beside_touches(problem, newton, search.orbits, 1);
+        self.beside_touches(problem, newton, search.orbits, 1, after);
     }
 
     /// Records what test functions show at touches, and at no end of the step between the points of these places from the last one on. Behind a
@@ -128,6 +128,7 @@ impl Engine {
         newton: &mut Newton,
         orbits: Vec<CurvePoint>,
         place: usize,
+        after: usize,
     ) {
         let Some(before) = self.seen.len().checked_sub(place + 1) else {
             return;
@@ -155,7 +156,6 @@ impl Engine {
             Seen::at(problem, &orbit, ends[0].falls)
         });
         let touches: Vec<Seen> = touches.collect();
-        let after = problem.points() - place;
         self.record_between(problem, newton, ends, touches, after);
     }
 
@@ -235,14 +235,10 @@ impl TouchSearch<'_> {
             before: &before.point,
             next: &next.point,
         };
-        if (!explained || appeared) && halvings > 0 {
-            let middle = inside(problem.equations(), newton, part, 0.5, self.options);
-            let middle = middle.as_ref().and_then(|point| Gaps::at(problem, point));
-            if let Some(middle) = middle {
-                self.between(problem, newton, [before, &middle], halvings - 1);
-                self.between(problem, newton, [&middle, next], halvings - 1);
-                return;
-            }
+        let divided = (!explained || appeared)
+            && self.between_halves(problem, newton, [before, next], halvings);
+        if divided {
+            return;
         }
         if !explained && found.is_empty() {
             self.omit(problem, part);
@@ -251,11 +247,39 @@ impl TouchSearch<'_> {
             let mut at_once = vec![passage];
             if self.touch(problem, newton, part, &found, &mut at_once) {
                 found.retain(|other| !at_once.contains(other));
+            } else if self.between_halves(problem, newton, [before, next], halvings) {
+                // What was located already is known there.
+                return;
             } else {
                 self.omit(problem, part);
                 found.retain(|other| !is_copy(&passage, other));
             }
         }
+    }
+
+    /// Looks at both halves of a part, if there may be as many and an orbit between them is found. Says whether.
+    fn between_halves(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        [before, next]: [&Gaps; 2],
+        halvings: usize,
+    ) -> bool {
+        if halvings == 0 {
+            return false;
+        }
+        let part = Step {
+            before: &before.point,
+            next: &next.point,
+        };
+        let middle = inside(problem.equations(), newton, part, 0.5, self.options);
+        let middle = middle.as_ref().and_then(|point| Gaps::at(problem, point));
+        let Some(middle) = middle else {
+            return false;
+        };
+        self.between(problem, newton, [before, &middle], halvings - 1);
+        self.between(problem, newton, [&middle, next], halvings - 1);
+        true
     }
 
     /// Records what could not be located.

@@ -5,6 +5,7 @@
 
 use super::Engine;
 use super::explained::Bent;
+use super::joint::Joint;
 use super::seen::Seen;
 use crate::branches::problem::Test;
 use crate::branches::record::Kept;
@@ -29,6 +30,9 @@ pub(crate) struct Walk {
     /// Touches at which the branch bends.
     #[cfg_attr(feature = "serde", serde(default))]
     bent: Vec<Bent>,
+    /// The branch point that the last step passed.
+    #[cfg_attr(feature = "serde", serde(default))]
+    joint: Option<Joint>,
     /// What the branch had then.
     pub(crate) kept: Places,
 }
@@ -97,6 +101,7 @@ impl Walk {
             && self.looked.iter().all(|looked| is_vector(&looked.at))
             && self.touched.iter().all(|value| value.is_finite())
             && self.bent.iter().all(Bent::is_possible)
+            && self.joint.as_ref().is_none_or(Joint::is_possible)
             && self.halted.is_possible()
             && self.contraction.is_finite()
             && self.kept.points > 0
@@ -126,6 +131,7 @@ impl Engine {
             looked: self.looked.clone(),
             touched: self.touched.clone(),
             bent: self.bent.clone(),
+            joint: self.joint.clone(),
             kept: Places::all(kept),
         }
     }
@@ -140,6 +146,7 @@ impl Engine {
             looked: walk.looked,
             touched: walk.touched,
             bent: walk.bent,
+            joint: walk.joint,
             ..Self::new(options)
         };
         (engine, walk.halted, walk.contraction)

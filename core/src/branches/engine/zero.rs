@@ -13,6 +13,11 @@ use crate::event::{EventKind, Turn};
 
 /// Of a test function that is steep, and does not jump, at most this part is left beside its zero.
 const STEEP: f64 = 1e-3;
+/// Where branches cross, at most this part of a test function is left.
+const CROSSED: f64 = 1e-3;
+
+/// Turns as near to a joint of two branches, as a part of the step, are that.
+const AT_JOINT: f64 = 1e-3;
 
 /// What came of a change of sign.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,9 +67,15 @@ impl Engine {
             told,
             options: self.options.newton,
         };
-        let recorded = search.record(problem, newton);
+        let (recorded, at) = search.recorded(problem, newton);
         match recorded {
-            Recorded::Ends(stop) => self.ended = Some(stop),
+            Recorded::Ends(stop) => {
+                self.ended = Some(stop);
+                if let Some(at) = &at {
+                    search.explain_turns(problem, at.parameter());
+                }
+                self.end = at;
+            }
             Recorded::Turn(turn) if turn.value == search.middle() => self.unlocated.push(turn),
             _ => {}
         }
@@ -97,9 +108,27 @@ impl<'s> Search<'s> {
         }
     }
 
+    /// Where it vanishes.
+    pub(crate) fn place(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+    ) -> Option<CurvePoint> {
+        self.root(problem, newton).map(|root| root.located.point)
+    }
+
     /// Locates an event, with what the matrix has now or else with more of the equations in it, and keeps it; or the place where the test
     /// function jumps.
     pub(crate) fn record(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Recorded {
+        self.recorded(problem, newton).0
+    }
+
+    /// The same, with the place where the branch ends.
+    fn recorded(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+    ) -> (Recorded, Option<CurvePoint>) {
         let (mut kept, jump) = self.search(problem, newton, false);
         if kept == ZeroOutcome::Unread && !is_crossing(problem, self.change) {
             if problem.couple_fully_once(true) {
@@ -112,12 +141,14 @@ impl<'s> Search<'s> {
             }
         }
         match kept {
-            ZeroOutcome::Event => return Recorded::Found,
-            ZeroOutcome::Nothing => return Recorded::Nothing,
-            ZeroOutcome::Ends(stop) => return Recorded::Ends(stop),
+            ZeroOutcome::Event => return (Recorded::Found, None),
+            ZeroOutcome::Nothing => return (Recorded::Nothing, None),
+            ZeroOutcome::Ends(stop) => {
+                return (Recorded::Ends(stop), jump.map(|located| located.point));
+            }
             // It may well be an event.
             ZeroOutcome::Unread if problem.equations().is_cancelled() => {
-                return Recorded::Ends(Stop::Interrupted);
+                return (Recorded::Ends(Stop::Interrupted), None);
             }
             ZeroOutcome::Unread => {}
         }
@@ -132,7 +163,7 @@ impl<'s> Search<'s> {
             after: self.after,
         };
         problem.record_mut().turns.push(turn);
-        Recorded::Turn(turn)
+        (Recorded::Turn(turn), None)
     }
 
     fn middle(&self) -> f64 {
@@ -168,7 +199,8 @@ impl<'s> Search<'s> {
         let Some(root) = self.root(problem, newton) else {
             return (ZeroOutcome::Unread, None);
         };
-        let vanishes = problem.vanishes(self.change, &root.located);
+        let vanishes = problem.vanishes(self.change, &root.located)
+            || self.is_smooth_crossing(problem, &root.located);
         if !vanishes && !self.is_steep(problem, &root.located, steep) {
             return (ZeroOutcome::Unread, Some(root.located));
         }
@@ -201,6 +233,24 @@ impl<'s> Search<'s> {
         let known = problem.extremes(&located.point.u, &mut extremes);
         let sharpest = extremes.iter().map(|extreme| extreme.bend).max();
         known && sharpest == Some(Bend::Steep)
+    }
+
+    /// Whether branches cross there, and next to nothing is left of the test function: it is interpolated, from orbits that are known the less the
+    /// nearer to each other they are. Of a jump about half would be left.
+    fn is_smooth_crossing(&self, problem: &dyn BranchProblem, located: &Located) -> bool {
+        let [a, b] = self.sizes();
+        is_crossing(problem, self.change) && located.test.abs() <= CROSSED * a.min(b)
+    }
+
+    /// Takes back turns of the step where branches meet: the parameter of one of them has an extreme there, and the determinant is zero.
+    fn explain_turns(&self, problem: &mut dyn BranchProblem, joint: f64) {
+        let [a, b] = self.step.parameters();
+        let most = AT_JOINT * (b - a).abs().max((a - joint).abs());
+        let after = self.after;
+        problem.record_mut().turns.retain(|turn| {
+            let of_joint = matches!(turn.kind, EventKind::Fold | EventKind::BranchPoint);
+            !(of_joint && turn.after == after && (turn.value - joint).abs() <= most)
+        });
     }
 
     /// The test function, in the units of both ends.

@@ -73,6 +73,8 @@ pub struct Newton {
     scale: Scale,
     /// How far the unknowns have moved since the factors were made, in units of the scale.
     drift: f64,
+    /// Largest ratio of successive updates with the factors at hand, which tells how much the matrix has changed since they were made.
+    changed: f64,
     /// Largest ratio of successive updates in the last correction, where the Jacobian leaves something out.
     contraction: f64,
     /// What the last correction left, estimated, in units of the scale.
@@ -97,6 +99,8 @@ const CHORD_PATIENCE: usize = 2;
 const LASTING: f64 = 0.5;
 /// Updates that shrink by less than this do not shrink: that is rounding.
 const STAGNANT: f64 = 0.9;
+/// A matrix has changed noticeably since its factors were made where updates with them shrink more slowly than by this.
+const CHANGED: f64 = 0.03;
 /// Where an update above the tolerance is more than this part of the one before, the residual may be nothing but rounding.
 const STEADY: f64 = 0.1;
 /// The last row of (1).
@@ -123,6 +127,7 @@ impl Newton {
             units: vec![1.0; n + 1],
             scale: Scale::UNIT,
             drift: f64::INFINITY,
+            changed: 0.0,
             contraction: 0.0,
             left: 0.0,
             rounding: 0.0,
@@ -181,6 +186,9 @@ impl Newton {
                 .look(problem, u, border, renew, options.damped)
                 .map_err(|error| error.after(updates.count))?;
             updates.first.get_or_insert(size);
+            if !renew {
+                self.changed = self.changed.max(size / updates.previous);
+            }
             if self.ends(problem, u, size, &updates, options.tolerance) {
                 updates.count += 1;
                 problem.found(u);
@@ -312,6 +320,12 @@ impl Newton {
         self.contraction
     }
 
+    /// Whether an exact matrix has changed noticeably since its factors were made, as the updates of the last correction tell: the ratio of
+    /// two with the same factors is the change, relative to what is least of the matrix.
+    pub fn has_changed(&self) -> bool {
+        self.jacobian.is_exact() && self.changed > CHANGED
+    }
+
     /// As after a correction with this ratio: nothing else of one correction is used by the next.
     pub fn remember_contraction(&mut self, contraction: f64) {
         self.contraction = contraction;
@@ -362,6 +376,7 @@ impl Newton {
         self.jacobian.scale_columns(&self.units);
         self.statistics.factorisations += 1;
         self.drift = 0.0;
+        self.changed = 0.0;
         self.memory.clear();
         self.jacobian
             .factorise()

@@ -6,6 +6,9 @@ use crate::numeric::linear::dot;
 
 /// A tangent whose component along the parameter is smaller than this is computed exactly: it may be near a fold.
 const NEAR_FOLD: f64 = 0.1;
+/// The same in units of what an exact matrix has changed by since its factors were made: beside a branch point it is nearly singular, and what it
+/// changes by on the way from the predictor turns its tangent.
+const CHANGES: f64 = 3.0;
 /// Corrections of an exact tangent, at most.
 const REFINEMENTS: usize = 60;
 /// Relative size of the last of them, where it decides on an event.
@@ -34,7 +37,12 @@ impl Newton {
         self.unit_of_border(tangent);
         let n = self.norm.unknowns();
         let slope = tangent[n] / self.scale.parameter;
-        let steep = slope.abs() >= NEAR_FOLD * self.norm.length(self.scale, tangent);
+        let doubtful = if self.jacobian.is_exact() {
+            CHANGES * self.changed
+        } else {
+            0.0
+        };
+        let steep = slope.abs() >= (NEAR_FOLD + doubtful) * self.norm.length(self.scale, tangent);
         if steep && !exact {
             return true;
         }

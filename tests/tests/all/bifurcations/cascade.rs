@@ -35,11 +35,11 @@ pub const A6: Exact = Exact {
     drive: 1.880_077_405_264_828,
     multiplier: -0.639_583_443_698_677,
 };
-const PERIOD_2_UPPER_FOLD: Exact = Exact {
+pub const PERIOD_2_UPPER_FOLD: Exact = Exact {
     drive: 2.009_554_757_004_067,
     multiplier: 0.669_036_304_237_398,
 };
-const PERIOD_2_LOWER_FOLD: Exact = Exact {
+pub const PERIOD_2_LOWER_FOLD: Exact = Exact {
     drive: 0.294_528_806_187_216,
     multiplier: 0.795_091_307_354_537,
 };
@@ -48,7 +48,7 @@ pub const PERIOD_8_FOLD: Exact = Exact {
     multiplier: 0.183_740_023_455_888,
 };
 
-fn diagram(depth: usize) -> Diagram {
+pub fn diagram(depth: usize) -> Diagram {
     let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
     request.from(0.1).to(2.0).depth(depth).run().unwrap()
 }
