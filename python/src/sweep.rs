@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use hertzian::attractors::sweep::{Row, Sweep, Swept};
+use hertzian::time;
 use hertzian::time::history::record;
 use hertzian::time::stroboscope::Stroboscope;
-use hertzian::time;
 use hertzian::{RequestError, System};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyMemoryError;
