@@ -31,22 +31,32 @@ impl Ordering {
     }
 }
 
-/// A negative eigenvalue of a matrix with a diagonal of ones that is no rounding.
-const ROUNDING: f64 = 1e-9;
+/// A negative eigenvalue of a matrix with a diagonal of ones that is none of the digits that files have.
+const ROUNDING: f64 = 1e-6;
 
 /// How many eigenvalues of a matrix are negative by more than rounding, at least one where the elimination fails: those of
-/// `A + e D`, with the diagonal `D` of `A`, and the largest entry of `A` where that is zero. Such a matrix of a positive semidefinite `A` is
-/// definite, so that its pivots are positive in any order.
+/// `D^-1/2 A D^-1/2 + e`, with the diagonal `D` of `A`, and the largest entry of `A` where that is zero. Of a positive semidefinite `A` it
+/// is definite, with pivots of `e` at least in any order, however far entries of `A` are apart. It has as many negative eigenvalues as
+/// `A + e D` (Sylvester's law of inertia).
 pub(crate) fn negative(matrix: &SparseMatrix) -> usize {
     let largest = matrix.largest();
-    let own = (0..matrix.columns()).map(|i| {
-        let own = matrix.get(i, i).abs();
-        (i, i, if own > 0.0 { own } else { largest })
-    });
     let size = matrix.columns();
-    let moved = SparseMatrix::from_triplets(size, size, own)
-        .map(|diagonal| SparseMatrix::sum(&[(1.0, matrix), (ROUNDING, &diagonal)]));
-    match moved {
+    let unit = |i: usize| {
+        let own = matrix.get(i, i).abs();
+        if own > 0.0 { own } else { largest }.sqrt()
+    };
+    let units: Vec<f64> = (0..size).map(unit).collect();
+    let (starts, rows, values) = matrix.parts();
+    let scaled = (0..size).flat_map(|column| {
+        let entries = starts[column]..starts[column + 1];
+        let units = &units;
+        entries.map(move |k| {
+            let row = rows[k];
+            (row, column, values[k] / units[row] / units[column])
+        })
+    });
+    let moved = scaled.chain((0..size).map(|i| (i, i, ROUNDING)));
+    match SparseMatrix::from_triplets(size, size, moved) {
         Ok(moved) if largest > 0.0 => {
             Factor::of(&moved, &Ordering::of(&moved)).map_or(1, |factor| factor.negative())
         }

@@ -367,8 +367,11 @@ impl Task<'_> {
                 .map_err(|error| Failure::Model(path.clone(), ModelError::Unreadable(error)))?,
             None => format!("continuous {}, alpha {:?}", model.continuous, model.alpha),
         };
+        // A section's own text does not say where it is.
+        let section = self.options.section;
+        let section = section.map_or_else(String::new, |value| format!(", section {value:?}"));
         let identity = format!(
-            "hertzian {}, {}, {laws}, with {:?}, omega {omega:?}, tolerance {tolerance:?}",
+            "hertzian {}, {}, {laws}, with {:?}, omega {omega:?}, tolerance {tolerance:?}{section}",
             env!("CARGO_PKG_VERSION"),
             facts.equation,
             self.values(None)?,

@@ -75,6 +75,10 @@ impl SensitivityError {
 
 impl From<SensitivityError> for Error {
     fn from(error: SensitivityError) -> Self {
-        Self::new(error.kind(), error)
+        match error {
+            // The motion's own error says more.
+            SensitivityError::Motion(flow) => flow.into(),
+            other => Self::new(other.kind(), other),
+        }
     }
 }

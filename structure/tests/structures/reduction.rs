@@ -223,11 +223,14 @@ fn what_cannot_be_reduced_is_said() {
         said(&sound().damping(Damping::Matrix(coupled()))),
         ReductionError::Damping { count: 1 }
     );
-    // A damper between two coordinates has rows of zeros and an eigenvalue of zero.
-    let entries = [(4, 4, 1.0), (4, 5, -1.0), (5, 4, -1.0), (5, 5, 1.0)];
-    let damper = SparseMatrix::from_triplets(20, 20, entries).unwrap();
-    let damped = sound().damping(Damping::Matrix(damper));
-    assert!(Reduction::to(3.0).run(&damped).is_ok());
+    // A damper between two coordinates has rows of zeros and an eigenvalue of zero, which may stand beside a far stronger one, and have few digits.
+    for (strong, damper, own) in [(0.0, 1.0, 1.0), (1e3, 1e-8, 1e-8), (1.0, 1.0, 0.999_999_9)] {
+        let between = [(4, 4, own), (4, 5, -damper), (5, 4, -damper), (5, 5, own)];
+        let entries = between.into_iter().chain([(2, 2, strong)]);
+        let damper = SparseMatrix::from_triplets(20, 20, entries).unwrap();
+        let damped = sound().damping(Damping::Matrix(damper));
+        assert!(Reduction::to(3.0).run(&damped).is_ok(), "{strong} {own}");
+    }
     let unsymmetric = SparseMatrix::from_triplets(20, 20, (0..20).map(|i| (i, 0, 1.0))).unwrap();
     let unsymmetric = SparseStructure::new(sound().mass().clone(), unsymmetric);
     assert!(matches!(

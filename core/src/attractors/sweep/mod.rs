@@ -173,8 +173,8 @@ impl Sweep {
     }
 
     /// As [`run_with`](Self::run_with), and goes on from what a file holds of this sweep; what is computed is added to it. A
-    /// file that is not there is begun. `model` is one line that says which system it is, with everything that its motions depend on: a
-    /// file of another one, or of another request, is refused.
+    /// file that is not there is begun. `model` is one line that says which system it is, with everything that its motions depend on, and
+    /// where a [`section`](Self::section) is: a file of another one, or of another request, is refused.
     ///
     /// # Errors
     /// As [`run`](Self::run), and if the file cannot be used.
