@@ -11,7 +11,7 @@
 
 use hertzian::backbone::FreeOscillation;
 use hertzian::chart::{Chart, Curve, Note, Series, event_markers};
-use hertzian::{Branch, Error, Event, FrequencyResponse};
+use hertzian::{Branch, Error, Event, EventKind, FrequencyResponse};
 
 hertzian::oscillator! {
     Ball(q) {
@@ -77,8 +77,9 @@ fn describe(sigma: f64, branch: &Branch) {
         .folds()
         .map(|fold| format!("{:.4}", fold.point.value));
     let jumps = jumps.collect::<Vec<_>>().join(" and ");
-    let mut leaves = branch.points.iter().filter(|p| p.motion().minimum < 0.0);
-    let lost = leaves.next().map(|point| format!("{:.3}", point.value));
+    let touches = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
+    let lost = branch.events.iter().find(touches);
+    let lost = lost.map(|touch| format!("{:.4}", touch.point.value));
     let lost = lost.unwrap_or_else(|| "never".to_owned());
     println!("{sigma:<6} {peak:.3}  {at:.4}  {jumps:<20}  {lost}");
 }

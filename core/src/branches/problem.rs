@@ -224,6 +224,9 @@ pub(crate) trait BranchProblem {
         None
     }
 
+    /// The step to a point beyond the end is made again: nothing has ended yet.
+    fn goes_on(&mut self) {}
+
     /// Ends the branch within the step to a point beyond its end. If it only seemed to be one, the point is kept, and how it was read
     /// returned: the walk cannot be halted there for other unknowns.
     fn end(&mut self, newton: &mut Newton, step: Step<'_>, options: NewtonOptions) -> Option<Read> {

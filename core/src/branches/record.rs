@@ -63,9 +63,18 @@ impl Record {
         let here = |event: &&Event| {
             event.kind == EventKind::BranchPoint && event.after == self.points.len()
         };
-        let event = self.events.last().filter(here);
+        let event = self.events.iter().rfind(here);
         let last = || self.points.last().map(|point| point.value);
         event.map(|event| event.point.value).or_else(last)
+    }
+
+    /// Puts the branch point where the branch has joined another one behind what else happened on the way to it.
+    pub(crate) fn ends_with_joint(&mut self) {
+        let last = self.points.len();
+        let is_joint = |event: &Event| event.kind == EventKind::BranchPoint && event.after == last;
+        if let Some(place) = self.events.iter().rposition(is_joint) {
+            self.events[place..].rotate_left(1);
+        }
     }
 
     /// Has the last event, behind so many points, be where the branch ends on another one. It is what any branch point there is, that was not

@@ -136,7 +136,10 @@ impl Run<'_> {
             first - skeleton.begin,
         ];
         let around = before + after;
-        let meets = |way: f64| way < plan::SHORTER;
+        // The beginning is better elsewhere, if there is a longer way.
+        let ways = phases.windows(2).map(|pair| pair[1] - pair[0]);
+        let longest = ways.fold(0.0, f64::max);
+        let meets = |way: f64| way < plan::SHORTER.min(NEARER * longest);
         if before.min(after) < 0.2 * around && around > plan::CLOSE
             || self.way_around(u).is_some_and(meets)
         {

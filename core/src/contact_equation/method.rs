@@ -355,6 +355,10 @@ impl BranchProblem for ContactBranch<'_, '_> {
         Search::of_joint(self, step, &other, options).place(self, newton)
     }
 
+    fn goes_on(&mut self) {
+        self.run.joined = None;
+    }
+
     fn end(&mut self, newton: &mut Newton, step: Step<'_>, options: NewtonOptions) -> Option<Read> {
         let other = step_on_other_branch(&mut self.run.equations, newton, step, options)?;
         if !self.watched.is_empty() {

@@ -30,6 +30,8 @@ use crate::continuation::follow::{CurvePoint, Step};
 const OPPOSITE: f64 = -0.9;
 /// Places that are as far from the end differ by rounding, which (2) makes larger by at most so much.
 const MOST: f64 = 10.0;
+/// Their error is what (2) would change, at most so many times by how much they differ.
+const LARGEST: f64 = 1e6;
 
 /// What orbits have that those of half the period have not is as good as nothing below this part of what it was.
 const NEARLY: f64 = 0.05;
@@ -146,13 +148,14 @@ impl SpecialMonitor<'_, '_> {
         };
         let (near, far) = if a.0 < b.0 { (a, b) } else { (b, a) };
         let share = (near.0 / far.0).powi(4);
-        let factor = (share / (1.0 - share)).min(MOST);
+        let wanted = share / (1.0 - share);
+        let factor = wanted.min(MOST);
         let values = [0, 1].map(|i| near.1[i] + factor * (near.1[i] - far.1[i]));
         let size = values[0].abs().max(values[1].abs());
         self.special.push(Special {
             kind: SpecialKind::Degenerate,
             values,
-            error: factor.max(1.0) * apart(near.1, far.1) + ROUNDING * size,
+            error: wanted.clamp(1.0, LARGEST) * apart(near.1, far.1) + ROUNDING * size,
             after: self.points.len(),
         });
     }

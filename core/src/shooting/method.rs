@@ -230,6 +230,10 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         Search::of_joint(self, step, &other, options).place(self, newton)
     }
 
+    fn goes_on(&mut self) {
+        self.run.joined = None;
+    }
+
     fn end(&mut self, newton: &mut Newton, step: Step<'_>, options: NewtonOptions) -> Option<Read> {
         let equations = &mut self.equations;
         let other = step_on_other_branch(equations, newton, step, options)?;

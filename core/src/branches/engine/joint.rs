@@ -13,8 +13,10 @@ use crate::continuation::newton::Newton;
 
 /// This part of the way to the branch point is gone in one step, and half of it where that leads onto the other branch again.
 const PART: f64 = 0.7;
-/// The part of the first step beyond it that may be left.
+/// The part of the first distance from it that may be left.
 const LEFT: f64 = 0.05;
+/// A step that leads no nearer to the branch point than to this part of the way began where the one before did.
+const NEARER: f64 = 0.9;
 /// Steps that are made again, at most.
 const AGAIN: usize = 8;
 
@@ -74,7 +76,7 @@ impl Engine {
             Some(joint) => Joint {
                 left,
                 again: joint.again + 1,
-                halved: if left < joint.left {
+                halved: if left < NEARER * joint.left {
                     0
                 } else {
                     joint.halved + 1
@@ -85,12 +87,15 @@ impl Engine {
         if !joint.is_possible() || left <= LEFT * joint.whole {
             return false;
         }
-        let length = PART * 0.5_f64.powi(joint.halved) * left;
+        // A branch point that lies beyond the step is none of it.
+        let whole = newton.norm().length(step.before.scale, &step.difference());
+        let length = PART * 0.5_f64.powi(joint.halved) * left.min(whole);
         if length < self.options.steps.smallest {
             return false;
         }
         self.back = Some((step.before.clone(), length));
         self.joint = Some(joint);
+        problem.goes_on();
         true
     }
 }

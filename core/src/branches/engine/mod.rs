@@ -93,8 +93,8 @@ struct Engine {
     back: Option<(CurvePoint, f64)>,
     /// The branch point that the last step passed, which is made again.
     joint: Option<Joint>,
-    /// Where the branch ends within the last step.
-    end: Option<CurvePoint>,
+    /// Where the branch ends within a step, and the number of points before that.
+    end: Option<(CurvePoint, usize)>,
     /// The last points with the extremes of their gaps.
     gaps: Vec<Gaps>,
     /// The last point with the extremes of the gaps whose laws may have narrow places.
@@ -363,10 +363,8 @@ impl Engine {
             self.touches(problem, newton, step, turned, after);
             self.place_turns(problem);
             self.explain_verdict(problem);
-        } else if let Some(end) = self.end.take() {
-            let before = step.before;
-            let step = Step { before, next: &end };
-            self.touches(problem, newton, step, turned, after);
+        } else if let Some((end, _)) = self.end.take().filter(|end| end.1 == after) {
+            self.touches_before_end(problem, newton, step.before, &end, after);
         }
         if self.ended.is_some() {
             Continue::Break(Halt::Stop)

@@ -120,6 +120,26 @@ impl Engine {
         self.beside_touches(problem, newton, search.orbits, 1, after);
     }
 
+    /// The same in the step to where the branch ends, which stands already.
+    pub(super) fn touches_before_end(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        before: &CurvePoint,
+        end: &CurvePoint,
+        after: usize,
+    ) {
+        let stop = self.ended.take();
+        // What was found beyond the end is none of it.
+        self.seen.pop();
+        let falls = self.seen.last().and_then(|seen| seen.falls);
+        self.seen.push(Seen::at(problem, end, falls));
+        let step = Step { before, next: end };
+        self.touches(problem, newton, step, None, after);
+        self.ended = stop;
+        problem.record_mut().ends_with_joint();
+    }
+
     /// Records what test functions show at touches, and at no end of the step between the points of these places from the last one on. Behind a
     /// touch they change as a root or along another line: no parabola through three points tells that.
     fn beside_touches(

@@ -74,7 +74,7 @@ impl Engine {
                 if let Some(at) = &at {
                     search.explain_turns(problem, at.parameter());
                 }
-                self.end = at;
+                self.end = at.map(|at| (at, after));
             }
             Recorded::Turn(turn) if turn.value == search.middle() => self.unlocated.push(turn),
             _ => {}
@@ -196,11 +196,14 @@ impl<'s> Search<'s> {
         newton: &mut Newton,
         steep: bool,
     ) -> (ZeroOutcome, Option<Located>) {
-        let Some(root) = self.root(problem, newton) else {
+        let Some(mut root) = self.root(problem, newton) else {
             return (ZeroOutcome::Unread, None);
         };
-        let vanishes = problem.vanishes(self.change, &root.located)
-            || self.is_smooth_crossing(problem, &root.located);
+        let mut vanishes = problem.vanishes(self.change, &root.located);
+        if !vanishes && self.is_smooth_crossing(problem, &root.located) {
+            root.error += self.left_of_crossing(&root.located);
+            vanishes = true;
+        }
         if !vanishes && !self.is_steep(problem, &root.located, steep) {
             return (ZeroOutcome::Unread, Some(root.located));
         }
@@ -240,6 +243,20 @@ impl<'s> Search<'s> {
     fn is_smooth_crossing(&self, problem: &dyn BranchProblem, located: &Located) -> bool {
         let [a, b] = self.sizes();
         is_crossing(problem, self.change) && located.test.abs() <= CROSSED * a.min(b)
+    }
+
+    /// What that is in the parameter, which has an extreme where its slope is the test function.
+    fn left_of_crossing(&self, located: &Located) -> f64 {
+        let [a, b] = self.sizes();
+        let part = located.test.abs() / a.min(b);
+        let value = located.point.parameter();
+        let ways = self.step.parameters().map(|end| (end - value).abs());
+        let power = if self.change.test == Test::Slope {
+            2
+        } else {
+            1
+        };
+        part.powi(power) * ways[0].max(ways[1])
     }
 
     /// Takes back turns of the step where branches meet: the parameter of one of them has an extreme there, and the determinant is zero.
