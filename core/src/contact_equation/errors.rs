@@ -1,4 +1,14 @@
 //! How far two orbits are apart in what the error is of, and what that is measured by.
+//!
+//! Of an orbit `x` and a finer one `y` the extremes differ, to first order, by as much as the motions where that of the first is, at `t`:
+//!
+//! ```text
+//! max y - max x = y(t) - x(t) + O(y'(t)^2)                                                                     (1)
+//! ```
+//!
+//! That may vanish by chance. So the motions are compared at 24 phases as well where an error is to serve for orbits near by.
+//!
+//! Source: Danskin (1967), The Theory of Max-Min and its Application to Weapons Allocation Problems (derivatives of a largest value).
 
 use nalgebra::DMatrix;
 
@@ -164,7 +174,7 @@ impl Run<'_> {
 }
 
 /// How far a finer orbit is from where the coordinates of another one, or the one that the error is of, are smallest and largest: the error
-/// of these values, to first order.
+/// of these values, by (1).
 fn apart(finer: &Equations, extremes: &[[Place; 2]], accuracy: Accuracy) -> f64 {
     let motion = Motion::of(finer);
     let mut state = vec![0.0; finer.skeleton.order];

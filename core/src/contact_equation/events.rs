@@ -1,7 +1,18 @@
 //! Events of a branch, located again with more nodes until their value does not change.
 //!
-//! With test function `T` along the curve of the finer equations, from the orbit that the coarser ones gave, the secant method finds
-//! where `T` vanishes; the last change of the value is its error.
+//! With test function `T` along the curve of the finer equations, at the arc length `s` from the orbit that the coarser ones gave, the secant
+//! method finds where `T` vanishes,
+//!
+//! ```text
+//! s_(n+1) = s_n - T(s_n) (s_n - s_(n-1)) / (T(s_n) - T(s_(n-1)))                                               (1)
+//! ```
+//!
+//! and where branches cross, so that the equations are singular, the cubic through four points around does. At a touch `H = 0` is an
+//! equation besides, (2) and (3) of [`skeleton`](super::skeleton). Twice the last change of the value is the error that is stated; nodes are
+//! added four times at most.
+//!
+//! Source: Press et al. (2007), Numerical Recipes, section 9.2 (secant method); Berrut and Trefethen (2004), Barycentric Lagrange
+//! interpolation, section 2 (the polynomial through points).
 
 use nalgebra::DMatrix;
 
@@ -250,7 +261,7 @@ impl<'c> Curve<'c> {
     }
 }
 
-/// Where the test function vanishes along the curve of these equations, near a point of a coarser one.
+/// Where the test function vanishes along the curve of these equations, near a point of a coarser one, by (1).
 fn again(
     equations: &mut Equations,
     start: &CurvePoint,

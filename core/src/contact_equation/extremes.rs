@@ -1,8 +1,22 @@
 //! Extremes of the coordinates and of the gaps of an orbit, from one walk along its period.
 //!
-//! States are taken where the pass has them, and as densely as the linear part asks for where it has none. Where a slope changes its sign,
-//! its zero is closed in to: for a gap every one, and two between the same samples where gaps and slopes on both sides tell of them, for a coordinate those that may be its smallest or its largest value, as far as the cubic
-//! through positions and velocities on both sides tells.
+//! States are sampled: those of the pass where its nodes are dense enough, else eight to the shortest period of the linear part, its load
+//! and the directions that move, six on an interval at least. Between two samples that are `h` apart, with values `x`, `y` and slopes `v`,
+//! `w`, the slope of the cubic through all of these is, with `r = y - x` at the part `s` of the way,
+//!
+//! ```text
+//! h p'(s) = a s^2 + b s + h v,    a = 3 h (v + w) - 6 r,    b = 6 r - 4 h v - 2 h w                            (1)
+//! ```
+//!
+//! Where a slope changes its sign between two samples, its zero is located to `1e-9` of their distance: of a gap every one, of a coordinate
+//! those that may be its smallest or its largest value, as far as the value of the cubic at the zero of (1) tells. Where a gap has slopes of
+//! one sign at both ends, and (1) at `s = -b / (2 a)` is less than a tenth of the larger of them or has the other sign, the motion itself is
+//! looked at there, and both parts in the same way, to four halvings.
+//!
+//! Nothing proves that the cubic is near the motion. A maximum and a minimum of a gap between two samples of which (1) does not tell are not
+//! seen, and neither is a contact that begins and ends between them.
+//!
+//! Source: de Boor (2001), A Practical Guide to Splines, chapter IV (cubic Hermite interpolation).
 
 use super::motion::{GapExtreme, Motion};
 use super::placement::Told;
@@ -283,8 +297,8 @@ impl Scan<'_, '_> {
         to <= from
     }
 
-    /// Adds the extremes between two phases. Where the rate has one sign at both ends, the parabola that it is about tells whether it has another
-    /// one between them.
+    /// Adds the extremes between two phases. Where the rate has one sign at both ends, the parabola (1) tells whether it has another one between
+    /// them.
     fn between(&mut self, before: Seen, next: Seen, halvings: usize) {
         let time = next.x - before.x;
         if (before.rate > 0.0) != (next.rate > 0.0) {
@@ -306,7 +320,7 @@ impl Scan<'_, '_> {
         }
         let [v, w] = [before.rate, next.rate].map(|rate| rate * time);
         let way = next.gap - before.gap;
-        // p' = a s^2 + b s + v
+        // (1)
         let (a, b) = (3.0 * (v + w) - 6.0 * way, 6.0 * way - 4.0 * v - 2.0 * w);
         let s = -b / (2.0 * a);
         let turns = v.signum() * (v + 0.5 * b * s) < DIPS * v.abs().max(w.abs());
@@ -354,10 +368,10 @@ impl Turns {
     }
 }
 
-/// Where the cubic through positions and velocities on both sides turns.
+/// The value of the cubic through positions and velocities on both sides at the zero of (1).
 fn of_cubic([[x, v], [y, w]]: [[f64; 2]; 2], time: f64) -> f64 {
     let (v, w) = (v * time, w * time);
-    // p' = a s^2 + b s + v
+    // (1)
     let a = 6.0 * (x - y) + 3.0 * (v + w);
     let b = -6.0 * (x - y) - 4.0 * v - 2.0 * w;
     let root = (b * b - 4.0 * a * v).max(0.0).sqrt();

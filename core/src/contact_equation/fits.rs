@@ -1,4 +1,7 @@
 //! Whether equations fit the orbit of their last pass: switches are where its gaps have them, and what may meet is told in pairs.
+//!
+//! `H` is that of (2) and (3) of [`skeleton`](super::skeleton). A gap that is beyond a level without a switch is told by its
+//! [extremes](super::extremes), as far as these are seen.
 
 use super::configuration::Configuration;
 use super::equations::Equations;

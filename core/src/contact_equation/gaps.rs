@@ -1,4 +1,17 @@
 //! The gaps of a motion that is given at any phase: where they cross levels, and their extremes.
+//!
+//! Gap and rate are sampled 400 times in a period of the declaration. A rate that changes its sign between two samples has an extreme there,
+//! and a gap that changes sides of a level between two samples, or between one and an extreme, a crossing; both are located as roots. Two
+//! extremes between the same samples are not seen. That is enough to begin: switches are unknowns of the equations that are made then, and
+//! the extremes of the orbit that solves them are looked for anew, by [`extremes`](super::extremes).
+//!
+//! Half of the second derivative at an extreme is taken from rates on both sides,
+//!
+//! ```text
+//! g''/2 = (g'(tau + d) - g'(tau - d)) / (4 d) + O(d^2)                                                         (1)
+//! ```
+//!
+//! Source: Abramowitz and Stegun (1964), Handbook of Mathematical Functions, section 25.3 (numerical differentiation).
 
 use super::motion::GapExtreme;
 use super::placement::{Placed, Switch, Told};
@@ -52,7 +65,7 @@ impl Gaps<'_> {
         [output.gap, output.rate]
     }
 
-    /// Half of the second derivative by the phase, beside a phase on both sides.
+    /// (1), by the phase.
     pub(super) fn bend(&self, contact: usize, phase: f64) -> f64 {
         let rate = |phase: f64| self.gap(contact, phase)[1];
         (rate(phase + BEND) - rate(phase - BEND)) / (4.0 * BEND * self.values.base)

@@ -7,7 +7,10 @@
 //! dX(t + h)/ds = e^(A h) (dX(t)/ds + (h / s) A X(t)) + sum_q w_q (1 + d_q s A) e^(A d_q s) f_q                (2)
 //! ```
 //!
-//! (2) summed over the ways is the derivative in (3) of [`equations`](super::equations).
+//! with the time `s` of the interval and `h` of the way, and for every point `q` of the rule its weight `w_q` and what is left to the end of
+//! the way, `d_q`, as parts of the interval. (2) summed over the ways is the derivative in (3) of [`equations`](super::equations).
+//!
+//! Source: Davis and Rabinowitz (1984), Methods of Numerical Integration, chapter 2 (compound rules of Gauss type).
 
 use std::ops::Range;
 

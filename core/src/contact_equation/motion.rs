@@ -1,4 +1,7 @@
-//! The motion of an orbit at any phase, and the extremes of its gaps.
+//! The motion of an orbit at any phase, by (1) of [`equations`](super::equations): what forces have done is known at the nodes and the end
+//! of an interval, and between these by a polynomial, or, of pairs of states too fast for it, by [`partway`](super::partway).
+//!
+//! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, equation (4.2).
 
 use std::cell::RefCell;
 

@@ -3,8 +3,11 @@
 use crate::orbit::observe::Accuracy;
 
 /// Orbits from the forces at a few nodes of each stretch in contact: nothing else is unknown but where stretches begin and end, and the
-/// state where the period begins. Between contacts the motion is known in closed form, so that no harmonic is cut off and nothing is
-/// sampled.
+/// state where the period begins. Between contacts the motion is known in closed form, and in contact too where forces are affine, so that no
+/// harmonic is cut off.
+///
+/// Where contact begins and ends is solved for. Whether it does so elsewhere too is told by the extremes of gaps, which are looked for between
+/// samples of the motion, eight to its shortest period; no bound says that none is missed.
 ///
 /// Where an orbit comes back after a part of its period with coordinates or contacts in each other's place, as in a bearing or between two
 /// equal stops, that part is all that is computed.

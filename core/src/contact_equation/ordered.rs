@@ -2,7 +2,8 @@
 //!
 //! Equations are exact while their switches are in the order that they are told in. Where that changes within a step, those of either end are
 //! right to first order beyond the change alone: test functions there, and events, are those of equations that are told in the order of the
-//! orbit itself, which is solved for again with them.
+//! orbit itself, which is solved for again with them. What the order is of is in [`skeleton`](super::skeleton), why a wrong one is right to
+//! first order at the pass of an interval ([`pass`](super::pass)).
 
 use nalgebra::DMatrix;
 

@@ -1,4 +1,7 @@
-//! One pass over an orbit: the states from cut to cut, residuals, and derivatives by all unknowns.
+//! One pass over an orbit: the states from cut to cut by (1), residuals by (2), and derivatives by all unknowns, by the length of an interval
+//! as in (3).
+//!
+//! Numbers of equations are those of [`equations`](super::equations).
 
 use super::block::row_times;
 use super::configuration::Configuration;

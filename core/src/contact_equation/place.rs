@@ -1,4 +1,4 @@
-//! A phase with its derivatives by unknowns.
+//! A phase with its derivatives by unknowns: of two switches by (2) of [`skeleton`](super::skeleton).
 
 /// `H` below which differences over the way are rounding.
 pub(super) const CLOSEST: f64 = 1e-13;

@@ -14,7 +14,7 @@ use crate::branches::recurrence::Recurrence;
 pub(super) enum Told {
     /// By its phase.
     Alone,
-    /// It is the first of two: its unknown is the middle, and half of `g''` of (3) belongs to it, by the phase.
+    /// It is the first of two: its unknown is the middle, and half of `g''` of (3) of [`skeleton`](super::skeleton) belongs to it, by the phase.
     First {
         other: usize,
         #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]

@@ -1,7 +1,7 @@
 //! Where an orbit's switches are, before there are equations: from samples of a motion, or from an orbit of other equations.
 //!
-//! Switches that may meet are told in pairs ([`skeleton`](super::skeleton)): those with a short way between them, and the extremes of gaps
-//! that are short of a level.
+//! Switches that may meet are told in pairs: those with a short way between them, and the extremes of gaps that are short of a level, with `H`
+//! by (3) of [`skeleton`](super::skeleton). How a motion is sampled is in [`gaps`](super::gaps).
 
 use super::equations::{Equations, Setting};
 use super::gaps::{BEND, Gaps, beginning, piece, room, seen};
@@ -19,7 +19,7 @@ pub(super) const SHORTER: f64 = 0.4;
 pub(super) const CLOSE: f64 = 0.1;
 pub(super) const LONG: f64 = 1.4;
 /// An extreme is watched from this `-H` on until it is more than the other one. With another extreme of its gap at the phase `d` beside it a gap
-/// falls by `g'' d^2 / 3` between both, so that `-H` is looked at in parts of `d^2` too: none is watched where both meet.
+/// falls by `g'' d^2 / 6` between both, an `H` of `d^2 / 3`, so that `-H` is looked at in parts of `d^2` too: none is watched where both meet.
 const NEAR: f64 = 0.4;
 const FAR: f64 = 1.0;
 const NEAR_ANOTHER: f64 = 0.75;

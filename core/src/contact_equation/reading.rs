@@ -1,4 +1,19 @@
 //! What is read off an orbit, with its errors: one step from it to a solution with more nodes tells what the nodes leave out.
+//!
+//! With the equations `F = 0` of more nodes and their Jacobian `J` in the plane across the tangent, at unknowns `u` that are interpolated, what
+//! is stated of the error of a quantity `Q` is
+//!
+//! ```text
+//! e = 2 |Q(u - J^-1 F(u)) - Q(u)|                                                                              (1)
+//! e_k = 2 (t_k / t)^2 e,    k = 1 .. 31                                                                         (2)
+//! ```
+//!
+//! and what the slope of the branch makes of the change of what is varied. (2) is that of orbits behind it on the branch, with the last coefficients `t` of the forces at the nodes, each times what a unit force does:
+//! an error is a product of what the forces and of what the rule of integration leaves out. Where (2) is more than the tolerance or says
+//! nothing, and after 31 orbits, (1) is asked for again. Neither is a bound.
+//!
+//! Source: Stetter (1978), The defect correction principle and discretization methods, Numerische Mathematik 29 (errors from one step on finer
+//! equations); Trefethen (2013), Approximation Theory and Approximation Practice, chapter 8 (what coefficients tell of the rest).
 
 use nalgebra::DMatrix;
 
@@ -90,7 +105,7 @@ impl Screened {
             && self.left <= SCREENED
     }
 
-    /// How many times as large errors may be where so much is left out: they are products of what the forces and what the rule of
+    /// How many times as large errors may be where so much is left out, by (2): they are products of what the forces and what the rule of
     /// integration leave out. First those of the orbit, then those of its multipliers. `None` if so much more is left out that this says
     /// nothing.
     fn grown(&mut self, [tails, stiffness]: [&[f64]; 2], narrowest: f64) -> Option<[f64; 2]> {
@@ -380,7 +395,7 @@ impl Run<'_> {
         tails
     }
 
-    /// The orbit with more nodes, by one step of Newton's method in the plane across the tangent.
+    /// The orbit with more nodes, by one step of Newton's method in the plane across the tangent, as in (1).
     fn corrected(&mut self, at: &CurvePoint) -> Option<Finer> {
         if self.finer.is_none() {
             self.finer = self.equations.finer_equations(at.parameter());

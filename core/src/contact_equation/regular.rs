@@ -1,8 +1,9 @@
 //! Whether an orbit comes back in less time than it is followed for: before its period is over, or with coordinates or contacts in each
 //! other's place.
 //!
-//! A motion is told by its state at one phase. With `q(t + j T/m) = S^j q(t)` of [`recurrence`](crate::branches::recurrence) there it has
-//! that for ever.
+//! A motion is told by its state at one phase, since equations of motion have one solution from each. If the state there is as (1) of
+//! [`recurrence`](crate::branches::recurrence) asks for, `q(t + j T/m) = S^j q(t)`, it is so for ever. States are compared to ten times the
+//! tolerance, from 1e-7 to 1e-4 of the size.
 
 use std::convert::Infallible;
 use std::f64::consts::TAU;

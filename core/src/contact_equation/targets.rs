@@ -6,7 +6,7 @@
 //! y = c z + k D z + y_p + P + D Q + y_r,    z = y_a - y_p(tau_a)                                                (1)
 //! ```
 //!
-//! where `P` and `Q` are the integrals of both factors times what the forces do, and `y_r` is what waves in resonance do. Numbers stand
+//! which is (1) of [`equations`](super::equations) pair by pair, where `P` and `Q` are the integrals of both factors times what the forces do, and `y_r` is what waves in resonance do. Numbers stand
 //! target by target, so that plain loops go over many of them.
 
 use super::block::{Pair, times};

@@ -1,4 +1,19 @@
 //! Extremes of gaps as the engine of branches asks for them, to locate where one touches a level.
+//!
+//! An extreme `g_e` short of its level is a multiple of the unknown `H` of the pair that watches it, by (3) of
+//! [`skeleton`](super::skeleton),
+//!
+//! ```text
+//! g_e - level = -(g''/2) H                                                                                     (1)
+//! ```
+//!
+//! and a gap that passes a level with the slope `r`, which `a` makes less, would turn beyond it at the height
+//!
+//! ```text
+//! r^2 / (2 |a|)                                                                                                (2)
+//! ```
+//!
+//! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (grazing).
 
 use std::f64::consts::TAU;
 
@@ -93,7 +108,7 @@ impl Run<'_> {
         true
     }
 
-    /// How slowly a gap passes a level where the force jumps while it is slowed down: the height `r^2 / (2 |a|)` at which it would turn, in units
+    /// How slowly a gap passes a level where the force jumps while it is slowed down: the height (2) at which it would turn, in units
     /// of half of the gap's range, with its slope `r` by the phase and how fast that changes, `a`, before the level.
     pub(super) fn slowest(&mut self, u: &[f64]) -> f64 {
         self.equations.compute(u, false);
@@ -235,8 +250,8 @@ impl Run<'_> {
         images
     }
 
-    /// Writes the linear form of unknowns that gap less level is at an extreme that is short of it, in units of the extreme: by (3) of
-    /// [`skeleton`](super::skeleton) a multiple of `H`; beyond a level where the force jumps, to leading order, of its square root's square. Says
+    /// Writes the linear form of unknowns that gap less level is at an extreme that is short of it, in units of the extreme: by (1)
+    /// a multiple of `H`; beyond a level where the force jumps, to leading order, of its square root's square. Says
     /// whether the extreme is watched.
     pub(super) fn extreme_form(&self, u: &[f64], extreme: &Extreme, form: &mut [f64]) -> bool {
         let watched = self.watched(u, extreme);

@@ -1,4 +1,7 @@
 //! An orbit of other equations: its unknowns in these, and the plan of equations that fit it.
+//!
+//! Switches are those of the other equations, or of the parabola of a gap at an extreme beyond its level, at `-+ sqrt(H)` with `H` by (3) of
+//! [`skeleton`](super::skeleton).
 
 use super::equations::Equations;
 use super::gaps::{Gaps, apart, seen};

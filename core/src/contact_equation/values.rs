@@ -1,4 +1,7 @@
-//! A system at values of its parameters and its frequency, in the pairs of its [linear part](super::linear).
+//! A system at values of its parameters and its frequency, in the pairs of its [linear part](super::linear), `y' = A y + ..`: contacts, and
+//! waves of the load with their steady response `(i h Omega - A)^-1 b_h` (1), which a pair of states in resonance has not.
+//!
+//! Source: Meirovitch (2001), Fundamentals of Vibrations, section 7.15 (response of general systems by pairs of states).
 
 use nalgebra::{Complex, DMatrix, DVector};
 
