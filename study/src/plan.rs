@@ -257,7 +257,7 @@ pub struct Request {
     /// The excitation frequency where a parameter varies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub omega: Option<f64>,
-    /// How orbits are computed. Default: by harmonic balance; solutions by shooting.
+    /// How orbits are computed. Default: by the method that fits; solutions by shooting, and by harmonic balance with `bifurcations`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub method: Option<Method>,
     /// Relative accuracy of peak-to-peak. Default: 1e-6.

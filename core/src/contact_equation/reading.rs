@@ -8,9 +8,10 @@
 //! e_k = 2 (t_k / t)^2 e,    k = 1 .. 31                                                                         (2)
 //! ```
 //!
-//! and what the slope of the branch makes of the change of what is varied. (2) is that of orbits behind it on the branch, with the last coefficients `t` of the forces at the nodes, each times what a unit force does:
-//! an error is a product of what the forces and of what the rule of integration leaves out. Where (2) is more than the tolerance or says
-//! nothing, and after 31 orbits, (1) is asked for again. Neither is a bound.
+//! and what the slope of the branch makes of the change of what is varied. (2) is that of orbits behind it on the branch, with the last
+//! coefficients `t` of the forces at the nodes, each times what a unit force does: an error is a product of what the forces and of what the
+//! rule of integration leaves out. Where (2) is more than the tolerance or says nothing, and after 31 orbits, (1) is asked for again. Neither
+//! is a bound.
 //!
 //! Source: Stetter (1978), The defect correction principle and discretization methods, Numerische Mathematik 29 (errors from one step on finer
 //! equations); Trefethen (2013), Approximation Theory and Approximation Practice, chapter 8 (what coefficients tell of the rest).

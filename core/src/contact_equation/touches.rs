@@ -7,7 +7,7 @@
 //! g_e - level = -(g''/2) H                                                                                     (1)
 //! ```
 //!
-//! and a gap that passes a level with the slope `r`, which `a` makes less, would turn beyond it at the height
+//! and a gap that passes a level with the slope `r`, while its second derivative `a` slows it down, would turn beyond it at the height
 //!
 //! ```text
 //! r^2 / (2 |a|)                                                                                                (2)
