@@ -1,4 +1,5 @@
-//! One orbit, or a branch of them, from a guess.
+//! One orbit, or a branch of them, from a guess: [`newton`](crate::continuation::newton) solves for the first orbit, damped, and where that
+//! leads nowhere with more nodes and from the orbit by another method; the [engine](crate::branches::engine) follows the branch.
 
 use std::time::Instant;
 

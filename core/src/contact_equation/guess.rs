@@ -1,7 +1,12 @@
 //! Motions that a first orbit is looked for at: the series of an orbit, or its states along the motion itself.
 //!
-//! Between samples at the phases `0` and `d` positions are the cubic that has both positions and velocities (de Boor (2001), A Practical Guide
-//! to Splines, chapter IV, cubic Hermite interpolation).
+//! Between samples that are `d` apart, with positions `a`, `b` and velocities `v`, `w`, positions are at the part `s` of the way
+//!
+//! ```text
+//! x = a + s (d v + s (3 r - 2 d v - d w + s (d v + d w - 2 r))),    r = b - a                                  (1)
+//! ```
+//!
+//! Source: de Boor (2001), A Practical Guide to Splines, chapter IV (cubic Hermite interpolation).
 
 use std::f64::consts::TAU;
 
@@ -74,7 +79,7 @@ impl<'g> Guess<'g> {
         for i in 0..n {
             let rise = b[i] - a[i];
             let ends = [step * a[n + i], step * b[n + i]];
-            // x = a + s (v_a + s (3 r - 2 v_a - v_b + s (v_a + v_b - 2 r)))
+            // (1)
             let square = 3.0 * rise - 2.0 * ends[0] - ends[1];
             let cube = ends[0] + ends[1] - 2.0 * rise;
             state[i] = a[i] + s * (ends[0] + s * (square + s * cube));

@@ -1,4 +1,12 @@
 //! What is done with the curve of orbits: what is read off every orbit, and which equations the next ones have.
+//!
+//! Unknowns `U(u)` of an orbit in other equations follow from its motion ([`transfer`]). A tangent `t` in these is a central difference,
+//!
+//! ```text
+//! (U(u + e t) - U(u - e t)) / (2 e)                                                                            (1)
+//! ```
+//!
+//! Source: Abramowitz and Stegun (1964), Handbook of Mathematical Functions, section 25.3 (numerical differentiation).
 
 use nalgebra::Complex;
 
@@ -131,7 +139,7 @@ impl<'r> Run<'r> {
         })
     }
 
-    /// A point of the branch as one of other equations. Its tangent is a difference.
+    /// A point of the branch as one of other equations. Its tangent is (1).
     pub(super) fn point_in(
         &mut self,
         point: &CurvePoint,

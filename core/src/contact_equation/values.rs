@@ -156,7 +156,7 @@ impl Contact {
     /// Gap and rate in these states, and what they are of the states as rows. There is room for `another` row.
     ///
     /// ```text
-    /// g = d . q - delta,    g' = d . q' + (d' . q - delta') tau'
+    /// g = d . q - delta,    g' = d . q' + (d' . q - delta') tau'                                              (2)
     /// ```
     pub(super) fn output(
         &self,
