@@ -19,12 +19,18 @@ class HertzianError(Exception):
 
     #: What is to be changed for an answer: "request", "model", "no-orbit", "limit", "motion", "cancelled", "file" or "system".
     kind: str = "other"
-    #: The error with the numbers that it carries, as text.
+    #: The error with everything that it carries, as text.
     details: str
+    #: Which of the errors of this kind it is, as "SingularMass"; empty where the library has none.
+    variant: str
+    #: The numbers that it carries, by name.
+    values: dict[str, float]
 
     def __init__(self, sentence: str, details: str = "") -> None:
         super().__init__(sentence)
         self.details = details
+        self.variant = ""
+        self.values = {}
 
 
 class RequestError(HertzianError, ValueError):

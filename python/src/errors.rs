@@ -3,6 +3,7 @@
 use hertzian::error::{Error, ErrorKind, chain};
 use hertzian::generic::DeclarationError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 /// The exception of an error.
 pub fn exception(error: impl Into<Error>) -> PyErr {
@@ -27,6 +28,13 @@ fn built(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             .getattr(class(error.kind()))?
             .call1((sentence, details))?
     };
+    value.setattr("variant", error.variant())?;
+    // Of several numbers of one name the first, as in `Error::value`.
+    let values = PyDict::new(py);
+    for (name, number) in error.values().into_iter().rev() {
+        values.set_item(name, number)?;
+    }
+    value.setattr("values", values)?;
     Ok(PyErr::from_value(value))
 }
 

@@ -56,6 +56,18 @@ def test_a_branch_that_ends_early_says_why(duffing):
     assert resumed.points == whole.points and resumed.events == whole.events
 
 
+def test_numbers_of_errors_are_read(one_sided):
+    with pytest.raises(hertzian.RequestError) as caught:
+        one_sided.response(-1.0, 1.0)
+    error = caught.value
+    assert error.variant == "Option" and error.values == {"value": -1.0}
+    with pytest.raises(hertzian.DeclarationError) as caught:
+        hertzian.Model("One(x) { ddot(x) + z = 0; }")
+    error = caught.value
+    line, column, _ = error.faults[0]
+    assert error.values == {"line": line, "column": column}
+
+
 def test_every_class_of_errors_has_its_kind():
     kinds = {
         "RequestError": "request",

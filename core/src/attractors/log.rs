@@ -23,7 +23,7 @@ pub(crate) struct Log {
 }
 
 /// Why there is no log, or none any more.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum LogError {
     /// The file cannot be read or written.
     #[error("cannot use the checkpoint {}: {kind}", .path.display())]
@@ -43,10 +43,11 @@ pub(crate) enum LogError {
     },
 }
 
-impl From<LogError> for crate::error::Error {
-    fn from(error: LogError) -> Self {
-        Self::new(crate::error::ErrorKind::File, error)
-    }
+crate::error::room_error! {
+    LogError, |_| crate::error::ErrorKind::File;
+    File { path, kind }
+    Other { path, found }
+    ;
 }
 
 impl Log {

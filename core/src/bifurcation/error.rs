@@ -1,11 +1,11 @@
 //! Why there is no diagram, or no backbone curve.
 
 use crate::attractors::basin::BasinError;
-use crate::error::{Error, ErrorKind};
+use crate::error::{ErrorKind, room_error};
 use crate::numeric::decimal::Decimal;
 
 /// Why there is no diagram, or no backbone curve.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub(crate) enum BifurcationError {
     /// A motion that begins at rest does not come to rest again.
     #[error("the motion from rest at {position} does not come to rest again")]
@@ -30,14 +30,16 @@ pub(crate) enum BifurcationError {
     #[error(
         "no orbit in phase resonance found at {} between the excitation frequencies {} and {}",
         Decimal::plain(*.value),
-        Decimal::plain(.between[0]),
-        Decimal::plain(.between[1])
+        Decimal::plain(*.from),
+        Decimal::plain(*.to)
     )]
     NoResonance {
         /// Value of what is varied.
         value: f64,
-        /// The excitation frequencies between which it was looked for.
-        between: [f64; 2],
+        /// The excitation frequency from which it was looked for.
+        from: f64,
+        /// The one to which.
+        to: f64,
     },
     /// What motions settle to could not be looked for.
     #[error("attractors at {} could not be looked for", Decimal::plain(*.value))]
@@ -50,10 +52,14 @@ pub(crate) enum BifurcationError {
     },
 }
 
-impl From<BifurcationError> for Error {
-    fn from(error: BifurcationError) -> Self {
-        Self::new(error.kind(), error)
-    }
+room_error! {
+    BifurcationError, BifurcationError::kind;
+    NeverAtRest { position }
+    NotFree { apart }
+    NoLoad {}
+    NoResonance { value, from, to }
+    Search { value, reason }
+    ;
 }
 
 impl BifurcationError {

@@ -3,13 +3,13 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::error::{Error, ErrorKind};
+use crate::error::{ErrorKind, room_error};
 #[cfg(feature = "plot")]
 use crate::numeric::decimal::Decimal;
 
 /// Why there is no chart of what was asked for.
 #[cfg(feature = "plot")]
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub(crate) enum ViewError {
     /// A value has no place on a logarithmic axis.
     #[error(
@@ -71,14 +71,19 @@ pub(crate) enum ViewError {
 }
 
 #[cfg(feature = "plot")]
-impl From<ViewError> for Error {
-    fn from(error: ViewError) -> Self {
-        Self::new(ErrorKind::Request, error)
-    }
+room_error! {
+    ViewError, |_| ErrorKind::Request;
+    NotPositive { name, value, varied, at }
+    Angle { name, harmonic }
+    NoAmplitude { name, count, measure }
+    OtherAxis { branch, expected, found }
+    Waterfall { harmonics }
+    Empty { branches }
+    ;
 }
 
 /// Why a result is not in its file, or cannot be had from it.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum FileError {
     /// A file could not be written.
     #[error("cannot write {}: {kind}", .path.display())]
@@ -136,8 +141,16 @@ impl FileError {
     }
 }
 
-impl From<FileError> for Error {
-    fn from(error: FileError) -> Self {
-        Self::new(ErrorKind::File, error)
-    }
+room_error! {
+    FileError, |_| ErrorKind::File;
+    Write { path, kind }
+    #[cfg(feature = "serde")]
+    Read { path, kind }
+    #[cfg(feature = "serde")]
+    Truncated { path }
+    #[cfg(feature = "serde")]
+    Format { path, reason }
+    #[cfg(feature = "serde")]
+    Version { path, version, expected }
+    ;
 }

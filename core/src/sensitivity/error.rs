@@ -1,11 +1,11 @@
 //! Why there are no derivatives.
 
-use crate::error::{Error, ErrorKind};
+use crate::error::{Error, ErrorKind, room_error};
 use crate::event::EventKind;
 use crate::time::FlowError;
 
 /// Why there are no derivatives of an orbit or of an event.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub(crate) enum SensitivityError {
     /// The place of such an event is that of another one, or none at other values of the parameters.
     #[error(
@@ -71,6 +71,21 @@ impl SensitivityError {
             _ => ErrorKind::NoOrbit,
         }
     }
+}
+
+room_error! {
+    SensitivityError;
+    Kind { kind }
+    Singular {}
+    Diverged { left }
+    NoFold { moved }
+    NoCrossing {}
+    Repeated {}
+    Beside {}
+    NoTouch {}
+    Uncertainty { text }
+    ;
+    Motion
 }
 
 impl From<SensitivityError> for Error {

@@ -1,7 +1,7 @@
 //! Why a motion cannot be continued, or a flow not be changed.
 
 use super::Tangent;
-use crate::error::{Error, ErrorKind};
+use crate::error::{Error, ErrorKind, Room};
 use crate::numeric::decimal::Decimal;
 use crate::system::{System, Variable};
 
@@ -243,5 +243,17 @@ fn refused(variable: Variable, value: f64) -> String {
 impl From<MotionError> for Error {
     fn from(error: MotionError) -> Self {
         Self::new(error.reason.kind(), error)
+    }
+}
+
+/// It is what its reason is, at a value of what is varied.
+impl Room for MotionError {
+    fn variant(&self) -> &str {
+        self.reason.variant()
+    }
+
+    fn append_values<'s>(&'s self, values: &mut Vec<(&'s str, f64)>) {
+        values.push(("value", self.value));
+        self.reason.append_values(values);
     }
 }

@@ -241,6 +241,7 @@ fn what_is_no_file_of_branches_is_refused() {
         path.display()
     );
     assert_eq!(error.to_string(), expected);
+    assert_eq!(error.values(), [("version", 1.0), ("expected", 2.0)]);
     // Before there were versions, none was written.
     let error = scratch.read("{\"points\": []}");
     assert_eq!(error.to_string(), expected);

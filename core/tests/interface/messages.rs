@@ -1,6 +1,9 @@
 //! What is said of a request that cannot be fulfilled.
 
 use hertzian::FrequencyResponse;
+use hertzian::backbone::{FreeOscillation, PhaseResonance};
+use hertzian::error::ErrorKind;
+use hertzian::structure::{DMatrix, Structure, parameter};
 
 hertzian::oscillator! {
     Linear(x) {
@@ -72,4 +75,65 @@ fn a_file_that_cannot_be_written_is_named_once() {
     let start = format!("cannot write {}: ", folder.display());
     let reason = text.strip_prefix(&start).expect("it begins so");
     assert!(!reason.contains("cannot write"), "{text}");
+}
+
+hertzian::oscillator! {
+    /// Where its law is zero a motion from rest stays at rest.
+    Plate(x) {
+        law stop(gap) { gap > 0 => gap, else => 0 }
+        ddot(x) + stop(x) = 0;
+    }
+}
+
+/// A program reads the numbers of errors whose enums are private, whichever room says no.
+#[test]
+fn numbers_of_every_room_are_read() {
+    let one = DMatrix::identity(2, 2);
+    let structure = || Structure::of(&one, &(0.1 * &one), &one);
+    let load = |at| (0, 1, parameter("drive", at));
+    let error = [load(0.5), load(0.75)]
+        .into_iter()
+        .fold(structure(), |to, (coordinate, harmonic, amplitude)| {
+            to.cosine(coordinate, harmonic, amplitude)
+        })
+        .build()
+        .expect_err("two values of one name");
+    assert_eq!(error.kind(), ErrorKind::Model);
+    assert_eq!(error.variant(), "TwoValues");
+    assert_eq!(error.values(), [("first", 0.5), ("second", 0.75)]);
+
+    let free = FreeOscillation::of(&Plate {}).from(-1.0).to(2.0);
+    let error = free.run().expect_err("nothing moves");
+    assert_eq!(
+        (error.kind(), error.variant()),
+        (ErrorKind::NoOrbit, "NeverAtRest")
+    );
+    assert_eq!(error.values(), [("position", -1.0)]);
+
+    let resonance = PhaseResonance::of(&MODEL).vary("drive").to(0.2);
+    let error = resonance.between(2.0, 3.0).run();
+    let error = error.expect_err("it is at one");
+    let expected = [("value", 0.1), ("from", 2.0), ("to", 3.0)];
+    assert_eq!(
+        (error.variant(), error.values()),
+        ("NoResonance", expected.to_vec())
+    );
+}
+
+/// The least value of a linear oscillator is its closed form, with the sign turned round.
+#[cfg(feature = "plot")]
+#[test]
+fn numbers_of_a_chart_are_read() {
+    use hertzian::chart::{Scale, View};
+
+    let branch = FrequencyResponse::of(&MODEL).from(0.5).to(0.6).run();
+    let branch = branch.expect("it is linear");
+    let minimum = "x:min".parse().expect("a measure");
+    let view = View::new().of(minimum).scale(Scale::Decibel);
+    let error = branch.chart_of(&view).expect_err("it is negative");
+    let at = error.value("at").expect("where");
+    let amplitude = 0.1 / (1.0 - at * at).hypot(0.1 * at);
+    let value = error.value("value").expect("the value");
+    assert_eq!(error.variant(), "NotPositive");
+    assert!((value + amplitude).abs() < 1e-6, "{value} {amplitude}");
 }

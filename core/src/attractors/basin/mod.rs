@@ -13,6 +13,7 @@ mod attractor;
 mod ball;
 mod catalogue;
 mod compute;
+mod error;
 mod grid;
 mod orbit;
 mod recognise;
@@ -22,22 +23,23 @@ mod tests;
 mod threads;
 
 pub use attractor::{Attractor, Fate};
+pub(crate) use error::BasinError;
 pub use grid::{Axis, Grid};
 pub(crate) use orbit::Finder;
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use super::log::{Log, LogError};
+use super::log::Log;
 use super::request::Request;
 use crate::branches::branch::Model;
 use crate::branches::progress::Progress;
 use crate::cancel::Cancel;
-use crate::error::{Error, ErrorKind};
+use crate::error::Error;
 use crate::model::request::RequestError;
 use crate::model::{self, validate};
 use crate::system::{System, Variable};
-use crate::time::{Flow, FlowError};
+use crate::time::Flow;
 
 /// Which basins to compute: set up step by step, then [run](Basin::run).
 ///
@@ -114,42 +116,6 @@ pub struct Basins {
     pub periods: u64,
     /// Whether all cells were looked at.
     pub complete: bool,
-}
-
-/// Why there are no basins.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub(crate) enum BasinError {
-    /// The request is at fault.
-    #[error("{name} {must}")]
-    Request {
-        /// What.
-        name: &'static str,
-        /// What it must be.
-        must: &'static str,
-    },
-    /// The log cannot be used.
-    #[error(transparent)]
-    Log(#[from] LogError),
-    /// The threads could not be started.
-    #[cfg(feature = "parallel")]
-    #[error("the system does not give {count} threads")]
-    Threads {
-        /// How many were asked for.
-        count: usize,
-    },
-    /// No motion of the grid can be computed.
-    #[error("no motion of the grid can be computed")]
-    Motion {
-        /// Why the first one cannot.
-        #[source]
-        reason: FlowError,
-    },
-}
-
-impl From<BasinError> for Error {
-    fn from(error: BasinError) -> Self {
-        Self::new(error.kind(), error)
-    }
 }
 
 impl Basin {
@@ -345,17 +311,5 @@ impl Basins {
     /// How many cells have a fate.
     pub fn count(&self, fate: Fate) -> usize {
         self.fates.iter().filter(|&&other| other == fate).count()
-    }
-}
-
-impl BasinError {
-    pub(crate) fn kind(&self) -> ErrorKind {
-        match self {
-            Self::Request { .. } => ErrorKind::Request,
-            Self::Log(_) => ErrorKind::File,
-            #[cfg(feature = "parallel")]
-            Self::Threads { .. } => ErrorKind::System,
-            Self::Motion { .. } => ErrorKind::Motion,
-        }
     }
 }

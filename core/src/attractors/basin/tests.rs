@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use super::*;
-use crate::error::chain;
+use crate::error::{ErrorKind, chain};
 use crate::system::Variable;
 use crate::testing::one_sided::{OneSided, one_sided};
 use crate::time::stroboscope::Stroboscope;
-use crate::time::{See, Tangent, Work};
+use crate::time::{FlowError, See, Tangent, Work};
 
 const MODEL: OneSided = one_sided(1.0);
 

@@ -13,7 +13,7 @@ pub use hertzian_compiler::text::Fault;
 use super::law::{constant, evaluate_constant};
 use super::program::Program;
 use super::{InterpretedLaw, Node};
-use crate::error::{Error, ErrorKind};
+use crate::error::{Error, ErrorKind, Room};
 use crate::law::Law;
 use crate::model::validate;
 use crate::system::{System, SystemFacts, Variable};
@@ -209,5 +209,19 @@ impl fmt::Debug for DeclarationError {
 impl From<DeclarationError> for Error {
     fn from(error: DeclarationError) -> Self {
         Self::new(ErrorKind::Model, error)
+    }
+}
+
+/// The numbers of each fault are its line and its column, from one on.
+impl Room for DeclarationError {
+    fn variant(&self) -> &'static str {
+        "DeclarationError"
+    }
+
+    fn append_values<'s>(&'s self, values: &mut Vec<(&'s str, f64)>) {
+        for fault in &self.faults {
+            values.push(("line", fault.line as f64));
+            values.push(("column", fault.column as f64));
+        }
     }
 }

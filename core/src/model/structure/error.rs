@@ -1,10 +1,10 @@
 //! What can be wrong with a structure.
 
-use crate::error::{Error, ErrorKind};
+use crate::error::{ErrorKind, room_error};
 use crate::numeric::decimal::Decimal;
 
 /// What is wrong with a structure.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub(crate) enum StructureError {
     /// A matrix is not as many rows and columns as the structure has coordinates.
     #[error(
@@ -129,8 +129,19 @@ pub(crate) enum StructureError {
     },
 }
 
-impl From<StructureError> for Error {
-    fn from(error: StructureError) -> Self {
-        Self::new(ErrorKind::Model, error)
-    }
+room_error! {
+    StructureError, |_| ErrorKind::Model;
+    MatrixSize { matrix, rows, columns, coordinates }
+    DirectionSize { contact, entries, coordinates }
+    NotFinite { place, value }
+    SingularMass { pivot }
+    NoCoordinate { coordinate, coordinates }
+    Arguments { law, expected, given }
+    Range { law, argument, value, range }
+    Name { parameter }
+    OutputName { output }
+    OutputSize { output, entries, coordinates }
+    NoContact { output, contact, contacts }
+    TwoValues { parameter, first, second }
+    ;
 }

@@ -291,8 +291,11 @@ impl PhaseResonance {
             let nearer = lags[i - 1].abs() < lags[i].abs();
             branch.points[i - usize::from(nearer)].orbit.clone()
         });
-        let between = [low, high];
-        let nearest = nearest.ok_or(BifurcationError::NoResonance { value, between })?;
+        let nearest = nearest.ok_or(BifurcationError::NoResonance {
+            value,
+            from: low,
+            to: high,
+        })?;
         Ok((nearest, branch.statistics))
     }
 }
