@@ -52,7 +52,9 @@ fn describe(branch: &Branch) {
         println!("points     {count}, omega from {from} to {to}");
     }
     println!("ended      {}", branch.stopped);
-    println!("method     {}", branch.method().unwrap_or("unknown"));
+    if let Some(method) = branch.method() {
+        println!("method     {method}");
+    }
     for event in &branch.events {
         let (kind, error) = (event.kind.to_string(), event.error);
         let omega = event.point.value;

@@ -133,7 +133,7 @@ pub use orbit::{observe, stability};
 pub use report::export;
 #[doc(hidden)]
 pub use response::stages;
-pub use response::{Chosen, FrequencyResponse, OrbitMethod, Resume};
+pub use response::{Chosen, FrequencyResponse, OrbitMethod, OrbitMethodKind, Resume};
 pub use shooting::Shooting;
 pub use system::System;
 

@@ -197,8 +197,8 @@ impl PyBranch {
 
     /// What followed it: "harmonic balance", "shooting" or "contact equation"; None of a branch from a file that does not say so.
     #[getter]
-    fn method(&self) -> Option<&'static str> {
-        self.held().method()
+    fn method(&self) -> Option<String> {
+        self.held().method().map(|method| method.to_string())
     }
 
     /// Counts of what the continuation cost: dict of int.

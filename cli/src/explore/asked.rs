@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use clap::{Parser, ValueEnum};
-use hertzian::System;
 use hertzian::generic::Declaration;
+use hertzian::{OrbitMethodKind, System};
 use serde::{Deserialize, Serialize};
 
 use super::declared::Texts;
@@ -193,7 +193,8 @@ impl Asked {
     pub fn method(&self, model: &dyn System) -> Result<By, Fault> {
         Ok(match self.by {
             Method::Automatic => match run::request(&self.options(By::Balance)?, model).choice() {
-                "harmonic balance" => By::Balance,
+                OrbitMethodKind::HarmonicBalance => By::Balance,
+                OrbitMethodKind::Shooting => By::Shooting,
                 _ => By::ContactEquation,
             },
             Method::Balance => By::Balance,

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::by_shooting::{self, Second};
 use super::following::{Following, Left, by_any};
+use super::kind::OrbitMethodKind;
 use crate::balance::symmetry::is_broken;
 use crate::balance_branch::check::Asked;
 use crate::balance_branch::context::BranchContext;
@@ -318,11 +319,11 @@ impl Branch {
         Ok(asked.check()?.0)
     }
 
-    /// The method that followed it, in words, whether it was asked for or [chosen](crate::Chosen): `harmonic balance`, `shooting` or
-    /// `contact equation`. `None` of a branch from a file that does not say so.
+    /// The method that followed it, whether it was asked for or [chosen](crate::Chosen). `None` of a branch from a file that does not say
+    /// so.
     ///
     /// ```
-    /// use hertzian::{FrequencyResponse, Shooting};
+    /// use hertzian::{FrequencyResponse, OrbitMethodKind, Shooting};
     ///
     /// hertzian::oscillator! {
     ///     Duffing(x) {
@@ -332,11 +333,13 @@ impl Branch {
     /// }
     ///
     /// let request = FrequencyResponse::of(&Duffing { drive: 0.2 }).from(0.5).to(0.6);
-    /// assert_eq!(request.run()?.method(), Some("harmonic balance"));
-    /// assert_eq!(request.by(Shooting::new()).run()?.method(), Some("shooting"));
+    /// assert_eq!(request.run()?.method(), Some(OrbitMethodKind::HarmonicBalance));
+    /// let by_shooting = request.by(Shooting::new()).run()?;
+    /// assert_eq!(by_shooting.method(), Some(OrbitMethodKind::Shooting));
+    /// assert_eq!(OrbitMethodKind::Shooting.to_string(), "shooting");
     /// # Ok::<(), hertzian::Error>(())
     /// ```
-    pub fn method(&self) -> Option<&'static str> {
+    pub fn method(&self) -> Option<OrbitMethodKind> {
         let known = self.following().ok().map(Following::method);
         known.or_else(|| written_method(&self.further))
     }
@@ -359,14 +362,12 @@ impl Branch {
 
 /// The method of a branch that was read from a file, as it was written.
 #[cfg(feature = "serde")]
-fn written_method(further: &Further) -> Option<&'static str> {
-    use super::following;
-
+fn written_method(further: &Further) -> Option<OrbitMethodKind> {
     let by = further.written["by"].as_object()?;
     let known = [
-        ("harmonic-balance", following::BALANCE),
-        ("shooting", following::SHOOTING),
-        ("contact-equation", following::EQUATION),
+        ("harmonic-balance", OrbitMethodKind::HarmonicBalance),
+        ("shooting", OrbitMethodKind::Shooting),
+        ("contact-equation", OrbitMethodKind::ContactEquation),
     ];
     let mut known = known.into_iter();
     known.find_map(|(key, method)| by.contains_key(key).then_some(method))
@@ -374,6 +375,6 @@ fn written_method(further: &Further) -> Option<&'static str> {
 
 /// Without files nothing is written.
 #[cfg(not(feature = "serde"))]
-fn written_method(_: &Further) -> Option<&'static str> {
+fn written_method(_: &Further) -> Option<OrbitMethodKind> {
     None
 }

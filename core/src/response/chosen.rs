@@ -8,7 +8,7 @@
 //! The contact equation has no equation for a system that nothing holds, may miss a first orbit, and may end where its equations fit no
 //! further orbit. There the balance is tried, which was asked for every branch before there was a choice.
 
-use super::following;
+use super::kind::OrbitMethodKind;
 use super::otherwise::Either;
 use super::sealed::Follow;
 use crate::balance_branch::options::HarmonicBalance;
@@ -49,7 +49,7 @@ const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 /// output](crate::FrequencyResponse::accuracy_of).
 ///
 /// ```
-/// use hertzian::FrequencyResponse;
+/// use hertzian::{FrequencyResponse, OrbitMethodKind};
 ///
 /// hertzian::oscillator! {
 ///     Stopped(x) {
@@ -59,10 +59,10 @@ const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 /// }
 ///
 /// let request = FrequencyResponse::of(&Stopped {}).from(0.8).to(1.2);
-/// assert_eq!(request.choice(), "contact equation");
+/// assert_eq!(request.choice(), OrbitMethodKind::ContactEquation);
 /// assert_eq!(request.reason(), "law `stop` opens");
-/// assert_eq!(request.run()?.method(), Some("contact equation"));
-/// assert_eq!(request.harmonics(20).run()?.method(), Some("harmonic balance"));
+/// assert_eq!(request.run()?.method(), Some(OrbitMethodKind::ContactEquation));
+/// assert_eq!(request.harmonics(20).run()?.method(), Some(OrbitMethodKind::HarmonicBalance));
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -146,11 +146,13 @@ impl Choice {
         choice.unwrap_or(Self::HarmonicBalance)
     }
 
-    /// The name of the method, as [`Branch::method`] has it.
-    pub(super) fn method(&self) -> &'static str {
+    /// The method, as [`Branch::method`] has it.
+    pub(super) fn method(&self) -> OrbitMethodKind {
         match self {
-            Self::HarmonicBalance => following::BALANCE,
-            Self::ContactEquation { .. } | Self::ToManyDigits { .. } => following::EQUATION,
+            Self::HarmonicBalance => OrbitMethodKind::HarmonicBalance,
+            Self::ContactEquation { .. } | Self::ToManyDigits { .. } => {
+                OrbitMethodKind::ContactEquation
+            }
         }
     }
 

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::both_ways::BothWays;
+use super::kind::OrbitMethodKind;
 use super::otherwise::{Either, Otherwise};
 use super::sealed::Follow;
 use crate::balance_branch::context::BranchContext;
@@ -13,11 +14,6 @@ use crate::branches::request::Request;
 use crate::contact_equation::{self, ContactEquation};
 use crate::error::Error;
 use crate::shooting::{self, Shooting};
-
-/// Names of methods.
-pub(super) const BALANCE: &str = "harmonic balance";
-pub(super) const SHOOTING: &str = "shooting";
-pub(super) const EQUATION: &str = "contact equation";
 
 /// What a branch was asked for by.
 #[derive(Clone)]
@@ -118,12 +114,12 @@ impl Following {
         }
     }
 
-    /// The name of the method.
-    pub(super) fn method(&self) -> &'static str {
+    /// The method.
+    pub(super) fn method(&self) -> OrbitMethodKind {
         match self {
-            Self::Balance { .. } => BALANCE,
-            Self::Shooting { .. } => SHOOTING,
-            Self::ContactEquation { .. } => EQUATION,
+            Self::Balance { .. } => OrbitMethodKind::HarmonicBalance,
+            Self::Shooting { .. } => OrbitMethodKind::Shooting,
+            Self::ContactEquation { .. } => OrbitMethodKind::ContactEquation,
         }
     }
 

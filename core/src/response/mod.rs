@@ -7,6 +7,7 @@ mod by_contact_equation;
 mod by_shooting;
 mod chosen;
 mod following;
+mod kind;
 mod multipliers;
 mod otherwise;
 mod reading;
@@ -17,6 +18,7 @@ mod resume;
 pub mod stages;
 
 pub use chosen::Chosen;
+pub use kind::OrbitMethodKind;
 
 use chosen::Choice;
 pub use resume::Resume;
@@ -152,11 +154,11 @@ impl FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// The name of the method that fits by what laws say in the range that is asked for, as [`Branch::method`] has it; an option of the
+    /// The method that fits by what laws say in the range that is asked for, as [`Branch::method`] has it; an option of the
     /// balance, or [accuracy of an output](Self::accuracy_of), asks for the balance whatever they say.
     ///
     /// ```
-    /// use hertzian::FrequencyResponse;
+    /// use hertzian::{FrequencyResponse, OrbitMethodKind};
     ///
     /// hertzian::oscillator! {
     ///     Spring(x) {
@@ -168,12 +170,12 @@ impl FrequencyResponse {
     ///
     /// let spring = Spring::default();
     /// let request = FrequencyResponse::of(&spring).vary("pulled").omega(1.0);
-    /// assert_eq!(request.choice(), "harmonic balance");
+    /// assert_eq!(request.choice(), OrbitMethodKind::HarmonicBalance);
     /// let request = request.from(1.0).to(4.0);
-    /// assert_eq!(request.choice(), "contact equation");
+    /// assert_eq!(request.choice(), OrbitMethodKind::ContactEquation);
     /// assert_eq!(request.reason(), "law `spring` has a corner");
     /// ```
-    pub fn choice(&self) -> &'static str {
+    pub fn choice(&self) -> OrbitMethodKind {
         Choice::within(&self.request).method()
     }
 

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use hertzian::system::System;
 use hertzian::{
-    Branch, ContactEquation, EventKind, FrequencyResponse, HarmonicBalance, Shooting, Side, Stage,
-    Stop, Verdict,
+    Branch, ContactEquation, EventKind, FrequencyResponse, HarmonicBalance, OrbitMethodKind,
+    Shooting, Side, Stage, Stop, Verdict,
 };
 
 use crate::resumed::{texts, written_and_read};
@@ -70,8 +70,8 @@ fn followed(system: &dyn System) -> Branch {
 
 #[test]
 fn laws_tell_the_method() {
-    let contact = "contact equation";
-    let balance = "harmonic balance";
+    let contact = OrbitMethodKind::ContactEquation;
+    let balance = OrbitMethodKind::HarmonicBalance;
     for (system, method, why) in [
         (&OneSided {} as &dyn System, contact, "law `contact` opens"),
         (&Duffing {}, balance, "every force is smooth"),
@@ -104,7 +104,7 @@ fn the_tolerance_tells_the_method() {
         let method = request.choice();
         let branch = request.from(0.9).to(0.95).run().expect("a branch");
         assert_eq!(branch.method(), Some(method));
-        assert_eq!(method == "harmonic balance", why == balance);
+        assert_eq!(method == OrbitMethodKind::HarmonicBalance, why == balance);
     }
 }
 
@@ -112,7 +112,7 @@ fn the_tolerance_tells_the_method() {
 #[test]
 fn a_contact_that_opens_has_folds_to_nine_digits() {
     let branch = followed(&OneSided {});
-    assert_eq!(branch.method(), Some("contact equation"));
+    assert_eq!(branch.method(), Some(OrbitMethodKind::ContactEquation));
     let mut folds: Vec<f64> = branch.folds().map(|fold| fold.point.value).collect();
     folds.sort_by(f64::total_cmp);
     let exact = [0.715_119_549_676_419, 0.960_163_671_878_57];
@@ -147,19 +147,19 @@ fn an_option_of_the_balance_asks_for_it() {
     ];
     for set in asked {
         let branch = set(request.clone()).run().expect("a branch");
-        assert_eq!(branch.method(), Some("harmonic balance"));
+        assert_eq!(branch.method(), Some(OrbitMethodKind::HarmonicBalance));
     }
     let asked = request.harmonics(10).by(ContactEquation::new());
     assert_eq!(
         asked.run().expect("a branch").method(),
-        Some("contact equation")
+        Some(OrbitMethodKind::ContactEquation)
     );
 }
 
 #[test]
 fn what_the_contact_equation_refuses_goes_to_the_balance() {
     let branch = followed(&Free {});
-    assert_eq!(branch.method(), Some("harmonic balance"));
+    assert_eq!(branch.method(), Some(OrbitMethodKind::HarmonicBalance));
     assert!(
         branch
             .points
@@ -176,8 +176,8 @@ fn no_broken_symmetry_is_lost() {
     let without = request.stability(false).run().expect("a branch");
     let found = [&with, &without].map(|branch| branch.events(EventKind::SymmetryBreaking).count());
     assert!(found[0] > 0 && found[0] == found[1], "{found:?}");
-    assert_eq!(with.method(), Some("contact equation"));
-    assert_eq!(without.method(), Some("harmonic balance"));
+    assert_eq!(with.method(), Some(OrbitMethodKind::ContactEquation));
+    assert_eq!(without.method(), Some(OrbitMethodKind::HarmonicBalance));
 }
 
 /// So it is of branches both ways, and of those that begin at an event.
@@ -189,18 +189,21 @@ fn no_broken_symmetry_is_lost_both_ways() {
     let without = quick.through(0.4).expect("a branch");
     let found = [&with, &without].map(|branch| branch.events(EventKind::SymmetryBreaking).count());
     assert!(found[0] > 0 && found[0] == found[1], "{found:?}");
-    assert_eq!(without.method(), Some("harmonic balance"));
+    assert_eq!(without.method(), Some(OrbitMethodKind::HarmonicBalance));
     // Nothing is left that could break on the branch that begins there.
     let event = with.events(EventKind::SymmetryBreaking).next();
     let other = quick.switch(event.expect("an event"), Side::One);
-    assert_eq!(other.expect("a branch").method(), Some("shooting"));
+    assert_eq!(
+        other.expect("a branch").method(),
+        Some(OrbitMethodKind::Shooting)
+    );
 }
 
 /// What a law is at both ends of the range counts, and not what it is now.
 #[test]
 fn the_range_of_a_parameter_tells_the_method() {
-    let contact = "contact equation";
-    let balance = "harmonic balance";
+    let contact = OrbitMethodKind::ContactEquation;
+    let balance = OrbitMethodKind::HarmonicBalance;
     for (now, range, method) in [
         (1.5, [1.5, 0.8], contact),
         (1.5, [0.8, 1.5], contact),
@@ -253,7 +256,7 @@ fn a_branch_is_resumed_by_what_followed_it() {
     let whole = request.clone().run().expect("a branch");
     let part = request.max_points(40).run().expect("a branch");
     let resumed = part.resume().max_points(20_000).run().expect("the rest");
-    assert_eq!(resumed.method(), Some("contact equation"));
+    assert_eq!(resumed.method(), Some(OrbitMethodKind::ContactEquation));
     assert!(resumed.points == whole.points);
 }
 
@@ -368,7 +371,7 @@ fn progress_says_that_the_balance_is_tried() {
     let (method, count) = whole
         .map(|branch| (branch.method(), branch.points.len()))
         .expect("a branch");
-    assert_eq!(method, Some("harmonic balance"));
+    assert_eq!(method, Some(OrbitMethodKind::HarmonicBalance));
     let first = seen.iter().take_while(|(stage, _)| *stage == Stage::Branch);
     let first = first.count();
     let [found, again] = [1..=first, 1..=count].map(Iterator::collect::<Vec<usize>>);

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use crate::common::{Folder as Temporary, study, unprepared};
-use hertzian::Cancel;
+use hertzian::{Cancel, OrbitMethodKind};
 use hertzian_study::{
     Folder, Keep, Part, Plan, Prepared, Ran, Request, Runner, Spread, Study, Variants,
 };
@@ -238,7 +238,7 @@ fn branches_that_are_kept_have_everything() {
     for variant in 0..2 {
         let file = path.join(format!("branches/{variant:08}-0.json"));
         let branch = hertzian::Branch::read(file).expect("a branch");
-        assert_eq!(branch.method(), Some("contact equation"));
+        assert_eq!(branch.method(), Some(OrbitMethodKind::ContactEquation));
         for point in &branch.points {
             assert!(point.motion().rms.is_some() && point.observed.contacts.len() == 1);
         }

@@ -8,7 +8,7 @@ use crate::branches::progress::Stage;
 use crate::branches::request::Request;
 use crate::continuation::newton::NewtonError;
 use crate::response::by_contact_equation;
-use crate::{Branch, ContactEquation, EventKind, FrequencyResponse, Stop};
+use crate::{Branch, ContactEquation, EventKind, FrequencyResponse, OrbitMethodKind, Stop};
 
 crate::oscillator! {
     OneSided(x) {
@@ -64,7 +64,7 @@ fn the_balance_comes_farther_and_finds_all() {
         ControlFlow::Continue(())
     });
     let found = found.expect("a branch");
-    assert_eq!(found.method(), Some("harmonic balance"));
+    assert_eq!(found.method(), Some(OrbitMethodKind::HarmonicBalance));
     assert_eq!(found.stopped, Stop::ReachedEnd);
     assert!(stages == vec![Stage::Again; found.points.len()]);
     let of = |kind: EventKind| found.events(kind).count();
@@ -80,9 +80,9 @@ fn what_is_interrupted_goes_on_to_the_same() {
     let whole = either().or_balance(&request(), Ok(lost(40)), &mut |_| ControlFlow::Continue(()));
     let whole = whole.expect("a branch");
     for (points, method) in [
-        (1, "contact equation"),
-        (5, "contact equation"),
-        (90, "harmonic balance"),
+        (1, OrbitMethodKind::ContactEquation),
+        (5, OrbitMethodKind::ContactEquation),
+        (90, OrbitMethodKind::HarmonicBalance),
     ] {
         let part = either().or_balance(&request(), Ok(lost(40)), &mut |progress| {
             if progress.done < points {
@@ -117,6 +117,6 @@ fn what_is_cancelled_is_left() {
     let resumed = part.resume().run().expect("a branch");
     assert_eq!(
         (resumed.method(), resumed.stopped),
-        (Some("harmonic balance"), Stop::ReachedEnd)
+        (Some(OrbitMethodKind::HarmonicBalance), Stop::ReachedEnd)
     );
 }
