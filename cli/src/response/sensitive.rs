@@ -53,7 +53,7 @@ pub enum Place {
 /// If something is not.
 pub fn check(options: &Options, model: &dyn System) -> Result<(), Failure> {
     let known = Model::of(model);
-    let names = || options.uncertain.iter().map(|own| own.name.as_str());
+    let names = || options.uncertain.iter().map(Uncertain::name);
     crate::values::once("--uncertain", names()).map_err(Failure::Option)?;
     let is_known = |name: &str| {
         name == "omega"

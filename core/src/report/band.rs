@@ -73,7 +73,7 @@ impl Branch {
     pub fn band(&self, view: &View, uncertain: &[Uncertain]) -> Result<Band, Error> {
         let seen = view.on(self)?;
         let wanted = [seen.wanted.clone()];
-        let mut by: Vec<&str> = uncertain.iter().map(|own| own.name.as_str()).collect();
+        let mut by: Vec<&str> = uncertain.iter().map(Uncertain::name).collect();
         by.push(&self.varied);
         let mut places = Vec::with_capacity(self.points.len());
         for point in &self.points {

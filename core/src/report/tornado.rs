@@ -57,7 +57,7 @@ impl Branch {
     ) -> Result<Chart, Error> {
         let usual;
         let uncertain = if uncertain.is_empty() {
-            usual = self.usual();
+            usual = self.usual()?;
             &usual
         } else {
             uncertain
@@ -66,9 +66,9 @@ impl Branch {
         let mut moved: Vec<(f64, Bar)> = Vec::new();
         let mut held: Vec<&str> = Vec::new();
         for own in uncertain {
-            let index = place_of(moves, &own.name)?;
+            let index = place_of(moves, own.name())?;
             let Some(by) = moves.place.get(index).copied().flatten() else {
-                held.push(&own.name);
+                held.push(own.name());
                 continue;
             };
             let value = moves.values[index];
@@ -117,24 +117,22 @@ impl Branch {
         format!("{name}: {why}")
     }
 
-    fn usual(&self) -> Vec<Uncertain> {
+    /// One per cent of every other parameter.
+    fn usual(&self) -> Result<Vec<Uncertain>, Error> {
         let parameters = self.model.parameters.iter();
         let others = parameters.filter(|parameter| parameter.name != self.varied);
-        let usual = others.map(|parameter| Uncertain {
-            name: parameter.name.clone(),
-            size: USUAL,
-            is_relative: true,
-        });
-        usual.collect()
+        others
+            .map(|parameter| Uncertain::relative(&parameter.name, USUAL))
+            .collect()
     }
 
     /// A parameter with its value and its uncertainty.
     fn written(&self, own: &Uncertain, value: f64) -> String {
         let mut parameters = self.model.parameters.iter();
-        let parameter = parameters.find(|parameter| parameter.name == own.name);
+        let parameter = parameters.find(|parameter| parameter.name == own.name());
         let unit = parameter.map_or("", |parameter| parameter.unit.as_str());
-        let (name, size) = (&own.name, in_words(own));
-        if own.is_relative || unit.is_empty() {
+        let (name, size) = (own.name(), in_words(own));
+        if own.is_relative() || unit.is_empty() {
             format!("{name} = {} ± {size}", with_unit(value, unit))
         } else {
             format!("{name} = ({} ± {size}) {unit}", Decimal::plain(value))
