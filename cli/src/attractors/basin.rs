@@ -53,7 +53,7 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     Ok(Results {
         rows: rows(&basins, names.len()),
         names,
-        array: export::npy_of_labels(columns, &labels),
+        array: export::npy_of_labels(columns, &labels)?,
         svg: chart(task, &grid, &basins)?.to_svg(),
         summary: summary(&basins),
         complete: basins.complete,

@@ -56,7 +56,7 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         all().fold(f64::INFINITY, f64::min),
         all().fold(f64::NEG_INFINITY, f64::max)
     );
-    Ok(table.with(svg, summary, states.len() == periods + 1))
+    Ok(table.with(svg, summary, states.len() == periods + 1)?)
 }
 
 /// All of the motion, as often as it is looked at.

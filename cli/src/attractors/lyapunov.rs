@@ -62,7 +62,7 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         let largest: Vec<f64> = lyapunov.batches().iter().map(|b| b[0]).collect();
         page = page.chart(chart(&task.title(drive, "")?, &largest, length, found[0]));
     }
-    Ok(table.with(page.to_svg(), summary, complete))
+    Ok(table.with(page.to_svg(), summary, complete)?)
 }
 
 fn describe(text: &mut String, title: &str, motion: &Lyapunov<'_>) {

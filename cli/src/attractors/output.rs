@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use hertzian::export;
+use hertzian::{Error, export};
 
 use super::run::Failure;
 use crate::response::files;
@@ -52,15 +52,18 @@ impl Table {
     }
 
     /// With a picture and a summary.
-    pub fn with(self, svg: String, summary: String, complete: bool) -> Results {
-        Results {
-            array: export::npy(self.names.len(), &self.array),
+    ///
+    /// # Errors
+    /// If a row had not as many numbers as there are names.
+    pub fn with(self, svg: String, summary: String, complete: bool) -> Result<Results, Error> {
+        Ok(Results {
+            array: export::npy(self.names.len(), &self.array)?,
             names: self.names,
             rows: self.rows,
             svg,
             summary,
             complete,
-        }
+        })
     }
 }
 

@@ -51,7 +51,7 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     }
     let columns = if charts.len() > 1 { 2 } else { 1 };
     let page = charts.into_iter().fold(Page::new(columns), Page::chart);
-    Ok(table.with(page.to_svg(), summary, complete))
+    Ok(table.with(page.to_svg(), summary, complete)?)
 }
 
 /// The portraits so far.

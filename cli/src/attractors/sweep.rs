@@ -250,7 +250,7 @@ fn results(
     });
     let picture = page(charts.collect());
     let summary = summary(rows, swept, order);
-    Ok(table.with(picture, summary, found.complete))
+    Ok(table.with(picture, summary, found.complete)?)
 }
 
 /// How many values there were, and at how many of them nothing was seen.
