@@ -6,7 +6,7 @@
 
 use hertzian::backbone::{FreeOscillation, PhaseResonance};
 use hertzian::chart::{Chart, Curve, Series};
-use hertzian::{Error, FrequencyResponse};
+use hertzian::{Error, FrequencyResponse, Point};
 
 hertzian::oscillator! {
     /// Spring of Hertz's exponent in both directions
@@ -63,17 +63,15 @@ pub fn main() -> Result<(), Error> {
         resonance.stopped
     );
 
-    let free = free.points.iter().map(|p| [p.omega, p.peak_to_peak()]);
-    let resonance = resonance.points.iter();
-    let resonance = resonance.map(|p| [p.orbit.omega, p.motion.peak_to_peak()]);
+    let place = |p: &Point| [p.omega(), p.peak_to_peak()];
     chart
         .reference(Series {
             label: "free oscillation".to_owned(),
-            points: free.collect(),
+            points: free.points.iter().map(place).collect(),
         })
         .trace(Series {
             label: "phase resonance".to_owned(),
-            points: resonance.collect(),
+            points: resonance.points.iter().map(place).collect(),
         })
         .write("backbone.svg")?;
     println!("written backbone.svg");

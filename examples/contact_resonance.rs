@@ -90,5 +90,5 @@ fn free_oscillation(highest: f64) -> Result<Vec<[f64; 2]>, Error> {
     let model = Ball { zeta, sigma };
     let curve = FreeOscillation::of(&model).from(1.02).to(highest).run()?;
     let points = curve.points.iter();
-    Ok(points.map(|p| [p.omega, p.peak_to_peak()]).collect())
+    Ok(points.map(|p| [p.omega(), p.peak_to_peak()]).collect())
 }

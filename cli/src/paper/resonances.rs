@@ -1,6 +1,7 @@
 //! Figures 2 to 7: primary resonances and what bends them.
 
-use hertzian::backbone::{FreeOscillation, FreePoint};
+use hertzian::Point;
+use hertzian::backbone::FreeOscillation;
 use hertzian::error::chain;
 
 use super::curves::{Case, Curves};
@@ -74,7 +75,7 @@ fn skeleton(alpha: f64) -> Result<Vec<[f64; 2]>, String> {
         .tolerance(1e-6)
         .run()
         .map_err(|error| chain(&error).to_string())?;
-    let place = |point: &FreePoint| [point.omega, point.peak_to_peak()];
+    let place = |point: &Point| [point.omega(), point.peak_to_peak()];
     Ok(curve.points.iter().map(place).collect())
 }
 
@@ -84,7 +85,7 @@ fn at_amplitude_one(alpha: f64) -> Result<f64, String> {
     let free = FreeOscillation::of(&spring).from(1.0).to(1.01);
     let curve = free.run().map_err(|error| chain(&error).to_string())?;
     let first = curve.points.first().ok_or("no free vibration was found")?;
-    Ok(first.omega)
+    Ok(first.omega())
 }
 
 fn spring(alpha: f64) -> ContinuousPower {

@@ -1,11 +1,9 @@
 //! `--backbone`: free oscillation of the same oscillator, and its phase resonance.
 
-use hertzian::backbone::{
-    Backbone as Curve, FreeOscillation, FreePoint, PhaseResonance, ResonancePoint,
-};
+use hertzian::backbone::{FreeOscillation, PhaseResonance};
 use hertzian::chart::Series;
 use hertzian::error::chain;
-use hertzian::{Branch, Cancel, Error, System};
+use hertzian::{Branch, Cancel, Error, Point, System};
 use serde::Serialize;
 
 use super::models::declared;
@@ -21,9 +19,9 @@ const LEAST_DRIVE: f64 = 0.05;
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Backbone {
     /// Free oscillation, without damping and excitation.
-    pub free: Option<Curve<FreePoint>>,
+    pub free: Option<Branch>,
     /// Phase resonance of the damped oscillator, as the drive falls.
-    pub resonance: Option<Curve<ResonancePoint>>,
+    pub resonance: Option<Branch>,
 }
 
 /// The backbones of the oscillator over the displacements of a branch in the frequency, and why one of them is missing.
@@ -46,7 +44,7 @@ pub fn of(
     (Backbone { free, resonance }, warnings)
 }
 
-fn free(options: &Options, branch: &Branch, cancel: &Cancel) -> Result<Curve<FreePoint>, Error> {
+fn free(options: &Options, branch: &Branch, cancel: &Cancel) -> Result<Branch, Error> {
     let ModelOptions { alpha, load, .. } = options.model;
     let model = declared(&ModelOptions {
         zeta: 0.0,
@@ -61,11 +59,7 @@ fn free(options: &Options, branch: &Branch, cancel: &Cancel) -> Result<Curve<Fre
     request.cancel(cancel).run()
 }
 
-fn resonance(
-    options: &Options,
-    model: &dyn System,
-    cancel: &Cancel,
-) -> Result<Curve<ResonancePoint>, Error> {
+fn resonance(options: &Options, model: &dyn System, cancel: &Cancel) -> Result<Branch, Error> {
     let to = LEAST_DRIVE * options.model.drive;
     let request = PhaseResonance::of(model).vary("drive").to(to);
     let request = request.between(options.range.from, options.range.to);
@@ -75,21 +69,15 @@ fn resonance(
 impl Backbone {
     /// Lines for the picture.
     pub fn references(&self) -> impl Iterator<Item = Series> {
-        let free = self.free.iter().map(|curve| {
-            let points = curve.points.iter();
-            let points = points.map(|point| [point.omega, point.peak_to_peak()]);
-            ("free oscillation", points.collect::<Vec<_>>())
-        });
-        let resonance = self.resonance.iter().map(|curve| {
-            let points = curve.points.iter();
-            let points = points.map(|point| [point.orbit.omega, point.motion.peak_to_peak()]);
-            ("phase resonance", points.collect())
-        });
-        let curves = free.chain(resonance);
-        let curves = curves.filter(|(_, points)| !points.is_empty());
-        curves.map(|(label, points)| Series {
+        let free = ("free oscillation", &self.free);
+        let resonance = ("phase resonance", &self.resonance);
+        let curves = [free, resonance].into_iter();
+        let curves = curves.filter_map(|(label, curve)| Some((label, curve.as_ref()?)));
+        let curves = curves.filter(|(_, curve)| !curve.points.is_empty());
+        let place = |point: &Point| [point.omega(), point.peak_to_peak()];
+        curves.map(move |(label, curve)| Series {
             label: label.to_owned(),
-            points,
+            points: curve.points.iter().map(place).collect(),
         })
     }
 }

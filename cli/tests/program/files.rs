@@ -31,6 +31,12 @@ fn quoted(text: &str) -> Vec<String> {
     parts.map(str::to_owned).collect()
 }
 
+/// The fields that a table of the chapter has.
+fn fields(heading: &str) -> BTreeSet<String> {
+    let rows = table(heading);
+    rows.iter().flat_map(|(names, _)| quoted(names)).collect()
+}
+
 /// What is quoted of a field of the JSON, of the part before its kinds are listed.
 fn described(heading: &str, field: &str) -> BTreeSet<String> {
     let rows = table(heading);
@@ -115,10 +121,6 @@ fn columns_are_those_of_the_chapter() {
 fn fields_are_those_of_the_chapter() {
     let command = "--alpha 1 --from 1.4 --to 0.705 --harmonics 10 --samples 256 --aft sampled --max-points 3000 --at 1.2";
     let (all, _) = written("sampled", command);
-    let fields = |heading: &str| -> BTreeSet<String> {
-        let rows = table(heading);
-        rows.iter().flat_map(|(names, _)| quoted(names)).collect()
-    };
     let (branch_in, orbit_in) = ("### A branch in JSON", "### An orbit in JSON");
     assert_eq!(names(&all), fields("response --json"));
     assert_fields(&all["branches"], &fields(branch_in));
@@ -167,13 +169,12 @@ fn fields_are_those_of_the_chapter() {
 fn fields_of_a_backbone_are_those_of_the_chapter() {
     let (all, _) = written("backbone", "--continuous --load 0 --backbone --harmonics 5");
     let said = described("response --json", "backbone");
-    let (free, resonance) = (&all["backbone"]["free"], &all["backbone"]["resonance"]);
-    for object in [
-        &all["backbone"],
-        &free["points"][0],
-        &resonance["points"][0],
-    ] {
-        assert!(names(object).is_subset(&said), "{object}");
+    assert!(names(&all["backbone"]).is_subset(&said));
+    for curve in ["free", "resonance"] {
+        let curve = &all["backbone"][curve];
+        assert!(names(curve).is_subset(&fields("### A branch in JSON")));
+        assert_fields(&curve["points"], &fields("### An orbit in JSON"));
+        assert_eq!(curve["request"]["backbone"], true);
     }
 }
 

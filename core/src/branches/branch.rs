@@ -224,6 +224,8 @@ fn contacts_of(system: &dyn System) -> Vec<String> {
 pub(crate) struct Further {
     pub(crate) system: Option<Arc<dyn System>>,
     pub(crate) request: Option<Arc<dyn Asked>>,
+    /// Whether the branch is a backbone: its orbits are read by what it was asked for, and no others are computed.
+    pub(crate) is_backbone: bool,
     #[cfg(feature = "serde")]
     pub(crate) written: serde_json::Value,
 }
@@ -234,8 +236,17 @@ impl Further {
         Self {
             system: Some(system),
             request: Some(request),
+            is_backbone: false,
             #[cfg(feature = "serde")]
             written: serde_json::Value::Null,
+        }
+    }
+
+    /// The same of a backbone.
+    pub(crate) fn of_backbone(self) -> Self {
+        Self {
+            is_backbone: true,
+            ..self
         }
     }
 }
@@ -247,16 +258,21 @@ pub(crate) trait Asked: Any + Debug + Send + Sync {
     fn written(&self) -> serde_json::Result<serde_json::Value>;
 }
 
+/// What says in a file that a branch is a backbone.
+#[cfg(feature = "serde")]
+const BACKBONE: &str = "backbone";
+
 #[cfg(feature = "serde")]
 impl Serialize for Further {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        match &self.request {
-            Some(request) => {
-                let written = request.written().map_err(serde::ser::Error::custom)?;
-                written.serialize(to)
-            }
-            None => self.written.serialize(to),
+        let Some(request) = &self.request else {
+            return self.written.serialize(to);
+        };
+        let mut written = request.written().map_err(serde::ser::Error::custom)?;
+        if let Some(written) = written.as_object_mut().filter(|_| self.is_backbone) {
+            written.insert(BACKBONE.to_owned(), true.into());
         }
+        written.serialize(to)
     }
 }
 
@@ -265,6 +281,7 @@ impl<'de> Deserialize<'de> for Further {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let written = serde_json::Value::deserialize(from)?;
         Ok(Self {
+            is_backbone: written[BACKBONE] == true,
             written,
             ..Self::default()
         })

@@ -103,6 +103,11 @@ pub enum RequestError {
     /// A branch that was read from a file was asked for what takes its model.
     #[error("the branch was read from a file and has no model: give it one by `attach(&model)`")]
     Detached,
+    /// A backbone was asked for orbits that are not in it.
+    #[error(
+        "the branch is a backbone, and has no orbits but its own: ask for others by a frequency response"
+    )]
+    Backbone,
     /// The model given to a branch is not its own.
     #[error("the branch is one of {expected}, and {found} has another name or other equations")]
     OtherModel {
@@ -197,6 +202,7 @@ crate::error::room_error! {
     Harmonics { harmonics, highest }
     State { entries, expected }
     Detached {}
+    Backbone {}
     OtherModel { expected, found }
     UnknownSignal { name, known }
     NoAccuracy { name, known }

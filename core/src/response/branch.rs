@@ -142,7 +142,7 @@ impl Branch {
         if point.orbit.has_series() {
             return Ok(point.clone());
         }
-        let following = self.following()?;
+        let following = self.followed()?;
         by_shooting::completed(following.request(), following.shooting(), point)
     }
 
@@ -222,7 +222,10 @@ impl Branch {
                 rest: Left::Nothing,
             },
         };
-        self.further = Further::of(model.shared(), Arc::new(following));
+        self.further = Further {
+            is_backbone: self.further.is_backbone,
+            ..Further::of(model.shared(), Arc::new(following))
+        };
         Ok(())
     }
 
@@ -232,19 +235,28 @@ impl Branch {
         if !self.further.written.is_null() {
             let written = serde_json::from_value(self.further.written.clone());
             let following = Following::of(model, written.map_err(|_| RequestError::Rest)?)?;
-            shooting::Asked::of(following.request(), &Shooting::new()).belongs(point)?;
+            // Along a backbone other things vary than in what it was read by.
+            let varying = self.further.is_backbone.then(|| self.varying(model, point));
+            let request = varying.as_ref().unwrap_or(following.request());
+            shooting::Asked::of(request, &Shooting::new()).belongs(point)?;
             return Ok(following);
         }
         self.followed_by(model, point)
     }
 
-    /// What a branch with this first point was followed by, if it was one of this system.
-    fn followed_by(&self, model: &dyn System, point: &Point) -> Result<Following, Error> {
+    /// A request that varies what the branch does, from this point of it.
+    fn varying(&self, model: &dyn System, point: &Point) -> Request {
         let mut request = Request::of(model);
         if self.varied != "omega" {
             request.vary = Some(self.varied.clone());
             request.omega = Some(point.orbit.omega);
         }
+        request
+    }
+
+    /// What a branch with this first point was followed by, if it was one of this system.
+    fn followed_by(&self, model: &dyn System, point: &Point) -> Result<Following, Error> {
+        let mut request = self.varying(model, point);
         let values = || {
             let events = self.events.iter().map(|event| event.point.value);
             let turns = self.turns.iter().map(|turn| turn.value);
@@ -340,7 +352,7 @@ impl Branch {
     /// # Ok::<(), hertzian::Error>(())
     /// ```
     pub fn method(&self) -> Option<OrbitMethodKind> {
-        let known = self.following().ok().map(Following::method);
+        let known = self.followed().ok().map(Following::method);
         known.or_else(|| written_method(&self.further))
     }
 
@@ -352,7 +364,22 @@ impl Branch {
         }
     }
 
+    /// What followed it, to compute further orbits by.
+    ///
+    /// # Errors
+    /// If it has no model, or is a backbone.
     pub(super) fn following(&self) -> Result<&Following, Error> {
+        if self.further.is_backbone {
+            return Err(RequestError::Backbone.into());
+        }
+        self.followed()
+    }
+
+    /// What followed it, to read its own orbits by.
+    ///
+    /// # Errors
+    /// If it has no model.
+    pub(super) fn followed(&self) -> Result<&Following, Error> {
         let request = self.further.request.as_deref();
         let request = request.map(|request| request as &dyn Any);
         let following = request.and_then(|request| request.downcast_ref::<Following>());

@@ -265,7 +265,7 @@ fn with_request(followed: Followed, request: &Request, shooting: Shooting) -> Br
 }
 
 /// What it takes to go on with a branch.
-fn further(request: &Request, shooting: Shooting, rest: Left<Rest>) -> Further {
+pub(super) fn further(request: &Request, shooting: Shooting, rest: Left<Rest>) -> Further {
     let following = Following::Shooting {
         request: request.afterwards(),
         shooting,

@@ -1,5 +1,6 @@
 //! What a user asks of a branch: the system, what is varied and how far, and the method.
 
+mod backbone;
 mod both_ways;
 mod branch;
 mod by_balance;
@@ -17,6 +18,7 @@ mod resume;
 #[doc(hidden)]
 pub mod stages;
 
+pub(crate) use backbone::read_by_shooting;
 pub use chosen::Chosen;
 pub use kind::OrbitMethodKind;
 

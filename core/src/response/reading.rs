@@ -124,7 +124,7 @@ impl Branch {
 
     fn read_signal(&self, source: Source, point: &Point) -> Result<Reading, Error> {
         // The series of an orbit that is known by its states was cut off, and its motion was not.
-        if let (false, Ok(following)) = (point.orbit.states.is_empty(), self.following()) {
+        if let (false, Ok(following)) = (point.orbit.states.is_empty(), self.followed()) {
             return by_shooting::reading(following.request(), following.shooting(), point, source);
         }
         // A coordinate is its series: that takes no model.
@@ -137,7 +137,7 @@ impl Branch {
         if point.orbit.has_series() {
             return of_series(system, point, source);
         }
-        let following = self.following()?;
+        let following = self.followed()?;
         by_shooting::reading(following.request(), following.shooting(), point, source)
     }
 }
@@ -146,7 +146,7 @@ impl Branch {
     /// Name of the output or the coordinate that the errors of its orbits are of, [`Point::error`]: what was
     /// [asked for](FrequencyResponse::accuracy_of). `None` where they are of all coordinates.
     pub fn accuracy_of(&self) -> Option<&str> {
-        let accuracy = match self.following() {
+        let accuracy = match self.followed() {
             Ok(following) => following.shooting().accuracy,
             Err(_) => written_accuracy(&self.further),
         };

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod at_rest;
+mod backbone;
 #[cfg(feature = "serde")]
 mod both_ways;
 mod cancelled;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::thread;
 
 use hertzian::attractors::basin::{Basin, Basins};
-use hertzian::backbone::{Backbone, FreeOscillation, FreePoint, PhaseResonance, ResonancePoint};
+use hertzian::backbone::{FreeOscillation, PhaseResonance};
 use hertzian::bifurcation::Diagram;
 use hertzian::shooting::BifurcationCurve;
 use hertzian::structure::Structure;
@@ -55,8 +55,6 @@ fn everything_computed_can_be_kept_and_sent() {
     is::<Diagram>();
     is::<FreeOscillation>();
     is::<PhaseResonance>();
-    is::<Backbone<FreePoint>>();
-    is::<Backbone<ResonancePoint>>();
     is::<Basin>();
     is::<Basins>();
     is::<Structure>();

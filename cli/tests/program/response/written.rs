@@ -351,13 +351,9 @@ fn a_backbone_is_drawn_through_the_resonance() {
         let points = points.expect("a curve");
         assert!(points.len() > 5, "{curve}");
         for point in points {
-            let (omega, size) = if curve == "free" {
-                let [one, other] = [0, 1].map(|end| number(&point["ends"][end][0]));
-                (number(&point["omega"]), one - other)
-            } else {
-                let [high, low] = ["maximum", "minimum"].map(|end| number(&point["motion"][end]));
-                (number(&point["orbit"]["omega"]), high - low)
-            };
+            let motion = &point["observed"]["motions"][0];
+            let [high, low] = ["maximum", "minimum"].map(|end| number(&motion[end]));
+            let (omega, size) = (number(&point["orbit"]["omega"]), high - low);
             let free = 0.954_693_569_728_51 * (0.5 * size.abs()).powf(0.25);
             let off = (omega / free - 1.0).abs();
             assert!(off < tolerance, "{curve} {omega} {free}");

@@ -19,30 +19,35 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::Backbone;
 use super::oscillation::Equations;
 use crate::bifurcation::error::BifurcationError;
+use crate::branches::branch::{Branch, Model};
 use crate::branches::error::OrbitError;
+use crate::branches::point::Point;
 use crate::branches::progress::{Progress, Stage};
 use crate::cancel::Cancel;
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
-use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::continuation::step::{self, StepControl};
 use crate::error::Error;
 use crate::model::error::ModelError;
 use crate::model::request::RequestError;
-use crate::model::validate;
+use crate::model::{self, validate};
+use crate::response::read_by_shooting;
 use crate::system::System;
-use crate::time;
-use crate::time::MotionError;
+use crate::time::{self, FlowError, MotionError};
 
 /// A motion that has not come back to this part of its size is not free.
 const RETURNED: f64 = 1e-6;
 const POINTS: usize = 5000;
 
 /// The frequency of free oscillation over its amplitude: set up step by step, then [run](FreeOscillation::run).
+///
+/// It gives a [`Branch`] over the frequency, whose orbits are known by two states, at rest where they begin and half a period later:
+/// [`Orbit::states`](crate::Orbit::states). What is not read off them [`Branch::complete`] has. Nothing is known of their stability: what is
+/// conserved neither grows nor decays.
 ///
 /// ```
 /// use hertzian::backbone::FreeOscillation;
@@ -56,7 +61,9 @@ const POINTS: usize = 5000;
 /// let curve = FreeOscillation::of(&Hertz {}).from(0.5).to(2.0).run()?;
 /// // omega = 0.95469357 a^(1/4), by a quadrature of the period.
 /// let last = curve.points.last().unwrap();
-/// assert!((last.omega - 0.95469356972851 * 2_f64.powf(0.25)).abs() < 1e-9);
+/// assert!((last.omega() - 0.95469356972851 * 2_f64.powf(0.25)).abs() < 1e-9);
+/// assert!((last.peak_to_peak() - 4.0).abs() < 1e-9);
+/// assert_eq!(curve.to_csv().lines().count(), 1 + curve.points.len());
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -69,26 +76,6 @@ pub struct FreeOscillation {
     max_points: usize,
     largest_step: f64,
     cancel: Cancel,
-}
-
-/// One free oscillation.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct FreePoint {
-    /// Its frequency.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub omega: f64,
-    /// Positions at rest, where it begins and half a period later.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub ends: [Vec<f64>; 2],
-}
-
-impl FreePoint {
-    /// Distance between the ends of the first coordinate.
-    pub fn peak_to_peak(&self) -> f64 {
-        (self.ends[0][0] - self.ends[1][0]).abs()
-    }
 }
 
 impl FreeOscillation {
@@ -135,19 +122,20 @@ impl FreeOscillation {
     /// # Errors
     /// If a parameter or an option is not usable, nothing oscillates at the first position, or a motion does not come back because
     /// the system has damping or an excitation. A curve that ends early is not an error: it comes back with what was computed and
-    /// with [`Backbone::stopped`].
-    pub fn run(&self) -> Result<Backbone<FreePoint>, Error> {
+    /// with [`Branch::stopped`].
+    pub fn run(&self) -> Result<Branch, Error> {
         self.run_with(|_| ControlFlow::Continue(()))
     }
 
-    /// As [`run`](Self::run), and calls `visit` at every point as it is found: to show progress, or to stop.
+    /// As [`run`](Self::run), and calls `visit` at every point as it is found: to show progress, or to stop. Its value is the position at
+    /// rest.
     ///
     /// # Errors
     /// As [`run`](Self::run).
     pub fn run_with(
         &self,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
-    ) -> Result<Backbone<FreePoint>, Error> {
+    ) -> Result<Branch, Error> {
         let started = Instant::now();
         let options = self.options()?;
         let mut equations = self.equations()?;
@@ -155,8 +143,9 @@ impl FreeOscillation {
         u.push(options.from);
         equations.measure(&u);
         let mut newton = Newton::new(&equations);
-        let mut points = Vec::new();
+        let mut points: Vec<Point> = Vec::new();
         let mut failure = None;
+        let mut position = options.from;
         let outcome = follow(
             &mut equations,
             &mut newton,
@@ -173,35 +162,55 @@ impl FreeOscillation {
                         return Continue::Break(Halt::Stop);
                     }
                 };
-                let (done, value) = (points.len() + 1, point.ends[0][0]);
+                position = equations.position(&at.u);
+                let progress = Progress {
+                    point: Some(&point),
+                    ..Progress::at(Stage::Curve, points.len() + 1, position)
+                };
+                let answer = visit(progress);
                 points.push(point);
-                let answer = visit(Progress::at(Stage::Curve, done, value));
                 answer.map_break(|()| Halt::Stop)
             },
         );
-        let value = points
-            .last()
-            .map_or(options.from, |last: &FreePoint| last.ends[0][0]);
+        let stopped = self.stopped(points.is_empty(), position, failure, outcome)?;
+        let omega = points.first().map_or(1.0, Point::omega);
+        Ok(Branch {
+            model: Model::of(&self.system),
+            varied: "omega".to_owned(),
+            points,
+            events: Vec::new(),
+            turns: Vec::new(),
+            begin: None,
+            stopped,
+            statistics: newton.statistics,
+            work: equations.flow.work(),
+            elapsed: started.elapsed(),
+            further: read_by_shooting(&self.system, self.tolerance, omega),
+        })
+    }
+
+    /// Why it ended, at this position.
+    ///
+    /// # Errors
+    /// If nothing was found, or a motion is not free.
+    fn stopped(
+        &self,
+        nothing: bool,
+        value: f64,
+        failure: Option<Result<f64, FlowError>>,
+        outcome: Result<Outcome, NewtonError>,
+    ) -> Result<Stop, Error> {
         let cancelled = self.cancel.is_cancelled();
-        let stopped = match (failure, outcome) {
-            _ if cancelled && !points.is_empty() => Stop::Interrupted,
+        Ok(match (failure, outcome) {
+            _ if cancelled && !nothing => Stop::Interrupted,
             _ if cancelled => return Err(OrbitError::Cancelled { value }.into()),
             (Some(Ok(apart)), _) => return Err(BifurcationError::NotFree { apart }.into()),
-            (Some(Err(reason)), _) if points.is_empty() => {
-                return Err(MotionError { value, reason }.into());
-            }
+            (Some(Err(reason)), _) if nothing => return Err(MotionError { value, reason }.into()),
             (Some(Err(reason)), _) => Stop::Motion { value, reason },
             (None, Err(reason)) => return Err(OrbitError::NoStart { value, reason }.into()),
             (None, Ok(Outcome::Stopped(stop))) => stop,
             // A walk along free oscillations is never resized.
             (None, Ok(Outcome::Halted(_))) => Stop::Interrupted,
-        };
-        Ok(Backbone {
-            points,
-            stopped,
-            statistics: newton.statistics,
-            work: equations.flow.work(),
-            elapsed: started.elapsed(),
         })
     }
 
@@ -237,7 +246,8 @@ impl FreeOscillation {
         let cancel = self.cancel.clone();
         let mut flow = time::of(&self.system, 1.0, self.tolerance)?;
         flow.until(&cancel);
-        Ok(Equations::new(flow, f64::from(facts.divisor), cancel))
+        let parameters = model::values(&self.system);
+        Ok(Equations::new(flow, parameters, facts.divisor, cancel))
     }
 
     /// The unknowns of the first oscillation.

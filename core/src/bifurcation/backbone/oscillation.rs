@@ -2,15 +2,19 @@
 
 use std::f64::consts::PI;
 
-use super::free::FreePoint;
 use crate::bifurcation::error::BifurcationError;
+use crate::branches::observed::{Motion, Observed};
+use crate::branches::orbit::Orbit;
+use crate::branches::point::Point;
+use crate::branches::recurrence::SignedPermutation;
+use crate::branches::stability::Stability;
 use crate::cancel::Cancel;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
 use crate::error::Error;
+use crate::shooting::extremes;
 use crate::system::Variable;
-use crate::time::MotionError;
-use crate::time::{Flow, FlowError, Tangent};
+use crate::time::{Flow, FlowError, MotionError, Stretch, Tangent};
 
 /// Times in which the first moment of rest is looked for, and how many.
 const STEP: f64 = 0.02;
@@ -38,6 +42,8 @@ const ELSEWHERE: f64 = 0.3;
 /// The equations (1) of [`free`](super::free); unknowns are the other positions and the frequency, the parameter is the first position.
 pub(super) struct Equations {
     pub(super) flow: Box<dyn Flow>,
+    /// Values of the parameters.
+    parameters: Vec<f64>,
     divisor: f64,
     state: Vec<f64>,
     tangent: Tangent,
@@ -48,14 +54,20 @@ pub(super) struct Equations {
 }
 
 impl Equations {
-    pub(super) fn new(flow: Box<dyn Flow>, divisor: f64, cancel: Cancel) -> Self {
+    pub(super) fn new(
+        flow: Box<dyn Flow>,
+        parameters: Vec<f64>,
+        divisor: u32,
+        cancel: Cancel,
+    ) -> Self {
         let n = flow.coordinates();
         Self {
             state: vec![0.0; 2 * n],
             tangent: Tangent::of_state(n, Some(Variable::Omega)),
             column: vec![0.0; n],
             units: [1.0; 2],
-            divisor,
+            divisor: f64::from(divisor),
+            parameters,
             flow,
             cancel,
         }
@@ -140,13 +152,26 @@ impl Equations {
         self.flow.set(Variable::Omega, u[n - 1])
     }
 
+    /// The first position.
+    pub(super) fn position(&self, u: &[f64]) -> f64 {
+        u[self.column.len()]
+    }
+
     /// The oscillation, and how far it misses its beginning, relative to its size.
-    pub(super) fn read(&mut self, u: &[f64]) -> Result<(FreePoint, f64), FlowError> {
+    pub(super) fn read(&mut self, u: &[f64]) -> Result<(Point, f64), FlowError> {
         let n = self.column.len();
         let half = PI / self.divisor;
+        let rate = u[n - 1] / self.divisor;
         self.begin(u)?;
-        let first = self.state[..n].to_vec();
-        self.flow.advance(0.0, half, &mut self.state, None, None)?;
+        let mut states = self.state.clone();
+        let first = states[..n].to_vec();
+        let before = self.flow.work().switches;
+        // It goes back the way it came.
+        let mut motions = vec![Motion::NONE; n];
+        let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut motions);
+        self.flow
+            .advance(0.0, half, &mut self.state, None, Some(see))?;
+        states.extend_from_slice(&self.state);
         let other = self.state[..n].to_vec();
         let end = 2.0 * half;
         self.flow.advance(half, end, &mut self.state, None, None)?;
@@ -155,6 +180,7 @@ impl Equations {
             pairs.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()))
         };
         let size = largest(&first, &other).max(f64::MIN_POSITIVE);
+        let switches = self.flow.work().switches - before;
         let mut apart = largest(&first, &self.state[..n]) / size;
         // What goes back the way it came under an excitation does so from a phase about which that is even, and from no other.
         self.begin(u)?;
@@ -162,11 +188,32 @@ impl Equations {
         self.flow
             .advance(start, start + end, &mut self.state, None, None)?;
         apart = apart.max(largest(&first, &self.state[..n]) / size);
-        let point = FreePoint {
-            omega: u[n - 1],
-            ends: [first, other],
+        let parts = self.divisor as usize;
+        let observed = Observed::extremes(motions, switches * parts);
+        Ok((self.point(u[n - 1], states, observed), apart))
+    }
+
+    /// An orbit that is at rest in two states. In a period of the declaration there are as many oscillations as that has of the excitation.
+    fn point(&self, omega: f64, states: Vec<f64>, observed: Observed) -> Point {
+        let orbit = Orbit {
+            series: Vec::new(),
+            states,
+            coordinates: self.column.len(),
+            omega,
+            base: omega / self.divisor,
+            period: 1,
+            parts: self.divisor as usize,
+            symmetric: false,
+            image: SignedPermutation::identity(),
         };
-        Ok((point, apart))
+        Point {
+            value: omega,
+            parameters: self.parameters.clone(),
+            orbit,
+            stability: Stability::unknown(),
+            observed,
+            error: None,
+        }
     }
 }
 

@@ -18,15 +18,17 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::Backbone;
 use crate::balance::aft::Aft;
 use crate::balance::resolution::resize;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::bifurcation::error::BifurcationError;
+use crate::branches::branch::{Branch, Model};
 use crate::branches::error::{OrbitError, unless_cancelled};
 use crate::branches::orbit::Orbit;
+use crate::branches::point::Point;
 use crate::branches::progress::{Progress, Stage};
 use crate::branches::recurrence::SignedPermutation;
+use crate::branches::stability::Stability;
 use crate::cancel::Cancel;
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
@@ -34,13 +36,12 @@ use crate::continuation::follow::{
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
-use crate::continuation::statistics::Statistics;
 use crate::continuation::step::{self, StepControl};
 use crate::error::Error;
 use crate::model::request::RequestError;
 use crate::model::{self, validate};
 use crate::numeric::fourier::series;
-use crate::orbit::observe::Motion;
+use crate::orbit::observe::{Motion, Observer};
 use crate::response::FrequencyResponse;
 use crate::system::{System, Variable};
 use crate::time::Work;
@@ -54,7 +55,8 @@ const POINTS: usize = 5000;
 const STEP: f64 = 1e-6;
 
 /// Where the first coordinate is in phase resonance with its load, as a parameter varies from the value that it has: set up step by
-/// step, then [run](PhaseResonance::run).
+/// step, then [run](PhaseResonance::run). It gives a [`Branch`] over that parameter, along which the frequency follows the resonance. Nothing is
+/// known of the stability of its orbits.
 ///
 /// ```
 /// use hertzian::backbone::PhaseResonance;
@@ -70,8 +72,8 @@ const STEP: f64 = 1e-6;
 /// let curve = PhaseResonance::of(&model).vary("drive").to(0.2).between(0.5, 2.0).run()?;
 /// // The load balances damping alone: omega = 1, amplitude = drive / 0.1.
 /// for point in &curve.points {
-///     assert!((point.orbit.omega - 1.0).abs() < 1e-9);
-///     assert!((point.motion.peak_to_peak() - 20.0 * point.value).abs() < 1e-8);
+///     assert!((point.omega() - 1.0).abs() < 1e-9);
+///     assert!((point.peak_to_peak() - 20.0 * point.value).abs() < 1e-8);
 /// }
 /// # Ok::<(), hertzian::Error>(())
 /// ```
@@ -85,20 +87,6 @@ pub struct PhaseResonance {
     max_points: usize,
     largest_step: f64,
     cancel: Cancel,
-}
-
-/// One orbit in phase resonance.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct ResonancePoint {
-    /// What is varied.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub value: f64,
-    /// The orbit.
-    pub orbit: Orbit,
-    /// Motion of the first coordinate.
-    pub motion: Motion,
 }
 
 impl PhaseResonance {
@@ -144,8 +132,8 @@ impl PhaseResonance {
     ///
     /// # Errors
     /// If a parameter or an option is not usable, or no orbit in phase resonance is found at the first value. A curve that ends
-    /// early is not an error: it comes back with what was computed and with [`Backbone::stopped`].
-    pub fn run(&self) -> Result<Backbone<ResonancePoint>, Error> {
+    /// early is not an error: it comes back with what was computed and with [`Branch::stopped`].
+    pub fn run(&self) -> Result<Branch, Error> {
         self.run_with(|_| ControlFlow::Continue(()))
     }
 
@@ -156,11 +144,11 @@ impl PhaseResonance {
     pub fn run_with(
         &self,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
-    ) -> Result<Backbone<ResonancePoint>, Error> {
+    ) -> Result<Branch, Error> {
         let started = Instant::now();
         let (index, parameters, options) = self.options()?;
         let value = options.from;
-        let (first, mut statistics) = self.first(&parameters, value)?;
+        let (first, response) = self.first(&parameters, value)?;
         let motion = Motion::of(first.row(0));
         let mut u = first.series.clone();
         u.push(first.omega);
@@ -168,16 +156,19 @@ impl PhaseResonance {
         u.push(value);
         let balance = self.balance(&parameters, first.omega);
         let (size, range) = (motion.peak_to_peak(), (options.to - value).abs());
-        let mut equations = Resonance::new(balance, index, size, range);
+        let mut equations = Resonance::new(balance, parameters, index, size, range);
         let mut newton = Newton::new(&equations);
-        let mut points = Vec::new();
+        let mut points: Vec<Point> = Vec::new();
         let see = &mut |equations: &mut Resonance<'_>, _: &mut Newton, seen: Visit<'_>| {
             let Visit::Point(at) = seen else {
                 return Continue::Continue(());
             };
             let point = equations.read(&at.u);
-            let (done, value) = (points.len() + 1, point.value);
-            let answer = visit(Progress::at(Stage::Curve, done, value));
+            let progress = Progress {
+                point: Some(&point),
+                ..Progress::at(Stage::Curve, points.len() + 1, point.value)
+            };
+            let answer = visit(progress);
             points.push(point);
             if answer.is_break() {
                 Continue::Break(Halt::Stop)
@@ -188,18 +179,25 @@ impl PhaseResonance {
         let outcome = follow(&mut equations, &mut newton, Start::Near(u), options, see);
         let outcome = outcome.map_err(|reason| OrbitError::NoStart { value, reason }.into());
         let outcome = outcome.map_err(|error| unless_cancelled(&self.cancel, value, error));
-        let stop = match outcome? {
+        let stopped = match outcome? {
             Outcome::Stopped(stop) => stop,
             // A walk of one number of harmonics is never resized.
             Outcome::Halted(_) => Stop::Interrupted,
         };
+        let mut statistics = response.statistics;
         statistics += newton.statistics;
-        Ok(Backbone {
+        Ok(Branch {
+            model: Model::of(&self.system),
+            varied: self.vary.clone().unwrap_or_default(),
             points,
-            stopped: stop,
+            events: Vec::new(),
+            turns: Vec::new(),
+            begin: None,
+            stopped,
             statistics,
             work: Work::default(),
             elapsed: started.elapsed(),
+            further: response.further.of_backbone(),
         })
     }
 
@@ -261,8 +259,8 @@ impl PhaseResonance {
         .until(&self.cancel)
     }
 
-    /// The orbit of the frequency response that is next to phase resonance, and what it cost.
-    fn first(&self, parameters: &[f64], value: f64) -> Result<(Orbit, Statistics), Error> {
+    /// The orbit of the frequency response that is next to phase resonance, and that response.
+    fn first(&self, parameters: &[f64], value: f64) -> Result<(Orbit, Branch), Error> {
         let [low, high] = self.between.ok_or(RequestError::Missing {
             name: "between",
             why: "it is not known where the resonance is looked for",
@@ -296,7 +294,7 @@ impl PhaseResonance {
             from: low,
             to: high,
         })?;
-        Ok((nearest, branch.statistics))
+        Ok((nearest, branch))
     }
 }
 
@@ -313,6 +311,9 @@ fn load(balance: &Balance<'_>, load: &mut [f64]) -> (usize, [f64; 2]) {
 /// The equations (1). The last of the extended unknowns is what is varied, the one before the frequency.
 struct Resonance<'a> {
     balance: Balance<'a>,
+    observer: Observer,
+    /// Values of the parameters, but for the one that is varied.
+    parameters: Vec<f64>,
     index: usize,
     /// What counts as one for displacements.
     size: f64,
@@ -326,9 +327,17 @@ struct Resonance<'a> {
 }
 
 impl<'a> Resonance<'a> {
-    fn new(balance: Balance<'a>, index: usize, size: f64, range: f64) -> Self {
+    fn new(
+        balance: Balance<'a>,
+        parameters: Vec<f64>,
+        index: usize,
+        size: f64,
+        range: f64,
+    ) -> Self {
         let n = balance.unknowns();
         Self {
+            observer: Observer::default(),
+            parameters,
             inner: Jacobian::new(balance.partition()),
             ahead: vec![0.0; n],
             behind: vec![0.0; n],
@@ -341,10 +350,13 @@ impl<'a> Resonance<'a> {
         }
     }
 
-    fn read(&mut self, u: &[f64]) -> ResonancePoint {
+    fn read(&mut self, u: &[f64]) -> Point {
         let n = self.ahead.len();
-        self.balance.set_parameter(self.index, u[n + 1]);
+        let value = u[n + 1];
+        self.balance.set_parameter(self.index, value);
         self.balance.set(u[n]);
+        let mut parameters = self.parameters.clone();
+        parameters[self.index] = value;
         let orbit = Orbit {
             series: u[..n].to_vec(),
             coordinates: self.balance.layout().coordinates,
@@ -356,10 +368,13 @@ impl<'a> Resonance<'a> {
             parts: 1,
             image: SignedPermutation::identity(),
         };
-        ResonancePoint {
-            value: u[n + 1],
-            motion: Motion::of(orbit.row(0)),
+        Point {
+            value,
+            parameters,
             orbit,
+            stability: Stability::unknown(),
+            observed: self.observer.observe(&mut self.balance, &u[..n]),
+            error: None,
         }
     }
 }

@@ -16,7 +16,7 @@ fn evaluations_do_not_allocate() {
     let model = Contact { drive: 0.1 };
     let request = PhaseResonance::of(&model);
     let balance = request.balance(&[0.1], 1.1);
-    let mut equations = Resonance::new(balance, 0, 1.0, 1.0);
+    let mut equations = Resonance::new(balance, vec![0.1], 0, 1.0, 1.0);
     let n = equations.unknowns();
     let mut jacobian = Jacobian::new(equations.partition());
     let (mut u, mut residual) = (vec![0.0; n + 1], vec![0.0; n]);
