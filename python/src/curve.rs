@@ -1,7 +1,7 @@
 //! Curves of bifurcations in two parameters.
 
-use hertzian::Complex;
 use hertzian::shooting::{BifurcationCurve, Special};
+use hertzian::{Complex, Point};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -37,30 +37,38 @@ impl PyBifurcationCurve {
     /// Values of the two parameters, in the order of the curve: array of shape (points, 2).
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let points = self.0.points.iter();
-        matrix(py, points.flat_map(|point| point.values).collect(), 2)
+        matrix(py, self.0.values.as_flattened().to_vec(), 2)
     }
 
     /// States at phase zero, all positions, then all velocities: array of shape (points, 2 coordinates).
     #[getter]
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let columns = self.0.points.first().map_or(0, |point| point.state.len());
-        let states = self.0.points.iter().flat_map(|point| &point.state);
-        matrix(py, states.copied().collect(), columns)
+        let points = self.0.points.iter();
+        let states: Vec<Vec<f64>> = points.map(|point| point.orbit.state()).collect();
+        let columns = states.first().map_or(0, Vec::len);
+        matrix(py, states.concat(), columns)
     }
 
     /// Floquet multipliers over the period, largest modulus first: complex array of shape (points, multipliers).
     #[getter]
     fn multipliers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<Complex<f64>>>> {
         let rows = self.0.points.iter();
-        let rows: Vec<&[Complex<f64>]> = rows.map(|p| p.multipliers.as_slice()).collect();
+        let rows: Vec<&[Complex<f64>]> = rows.map(|p| p.stability.multipliers.as_slice()).collect();
         ragged(py, &rows)
     }
 
     /// How often a gap crosses a level in a period: array of int of shape (points,).
     #[getter]
     fn switches<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
-        PyArray1::from_iter(py, self.0.points.iter().map(|point| point.switches as u64))
+        let points = self.0.points.iter();
+        let switches = points.map(|point| point.observed.switches.unwrap_or_default() as u64);
+        PyArray1::from_iter(py, switches)
+    }
+
+    /// Peak-to-peak of the first coordinate: array of shape (points,).
+    #[getter]
+    fn peak_to_peak<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_iter(py, self.0.points.iter().map(Point::peak_to_peak))
     }
 
     /// Its special points, in the order of the curve: list of `Special`.

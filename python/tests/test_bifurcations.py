@@ -24,6 +24,7 @@ def test_a_doubling_and_the_branch_that_begins_there(one_sided):
     curve = branch.track(doubling, "zeta", [0.03, 0.033])
     assert (curve.kind, curve.names, curve.period) == ("period-doubling", ("drive", "zeta"), 1)
     assert curve.values.shape == (len(curve), 2) and curve.states.shape == (len(curve), 2)
+    assert curve.peak_to_peak.shape == (len(curve),) and np.all(curve.peak_to_peak > 0.0)
     # It passes through the doubling.
     drive = np.interp(0.032, curve.values[:, 1], curve.values[:, 0])
     assert abs(drive - DOUBLING) < 1e-3

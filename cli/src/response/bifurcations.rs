@@ -222,7 +222,7 @@ impl Found {
         for track in &self.tracks {
             chart = chart.trace(Series {
                 label: format!("{}, period {}", track.kind, track.period),
-                points: track.points.iter().map(|point| point.values).collect(),
+                points: track.values.clone(),
             });
             special.extend(&track.special);
         }
@@ -402,13 +402,11 @@ fn value_of(options: &Options, model: &dyn System, name: &str) -> f64 {
 
 /// Whether a curve passes an event, which has this value of the second parameter.
 fn passes(track: &BifurcationCurve, event: &Event, value: f64) -> bool {
-    let size = track
-        .points
-        .iter()
-        .fold(0.0, |m: f64, p| m.max(p.values[0].abs()));
+    let values = track.values.iter();
+    let size = values.fold(0.0, |m: f64, [first, _]| m.max(first.abs()));
     track.period == event.point.orbit.period
-        && track.points.windows(2).any(|pair| {
-            let [a, b] = [pair[0].values, pair[1].values];
+        && track.values.windows(2).any(|pair| {
+            let [a, b] = [pair[0], pair[1]];
             let part = (value - a[1]) / (b[1] - a[1]);
             let at = a[0] + part * (b[0] - a[0]);
             (0.0..=1.0).contains(&part) && (at - event.point.value).abs() < 1e-3 * size

@@ -95,8 +95,8 @@ fn folds_at_negative_loads_mirror_those_at_positive_ones() {
         let number = |value: &Value| value.as_f64().expect("a number");
         let tracks = all["tracks"].as_array().expect("curves");
         let ends = tracks.iter().flat_map(|track| {
-            let points = track["points"].as_array().expect("points");
-            let ends = [&points[0], &points[points.len() - 1]].map(|end| &end["values"]);
+            let values = track["values"].as_array().expect("values");
+            let ends = [&values[0], &values[values.len() - 1]];
             ends.map(|end| [number(&end[0]), number(&end[1])])
         });
         ends.collect::<Vec<_>>()

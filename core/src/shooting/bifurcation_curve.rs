@@ -2,8 +2,6 @@
 //!
 //! What is special is looked for by [`special_monitor`](super::special_monitor).
 
-use nalgebra::Complex;
-
 use super::codimension_one::{Condition, Curve};
 use super::grazing_condition::GrazingCondition;
 use super::problem::ShootingProblem;
@@ -12,7 +10,7 @@ use super::special_monitor::SpecialMonitor;
 use super::start;
 use super::switch::is_crossing;
 use crate::branches::error::OrbitError;
-use crate::branches::point::Event;
+use crate::branches::point::{Event, Point};
 use crate::branches::progress::{Progress, See, Stage};
 use crate::branches::solve;
 use crate::continuation::follow::{Continue, CurvePoint, FollowOptions, Halt, Start, Stop, follow};
@@ -35,30 +33,15 @@ pub struct BifurcationCurve {
     pub names: [String; 2],
     /// Period of the orbits in periods of the declaration.
     pub period: usize,
-    /// The curve in its order.
-    pub points: Vec<BifurcationCurvePoint>,
+    /// Values of the two parameters, in the order of the curve.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub values: Vec<[f64; 2]>,
+    /// The orbits there, with their extremes and multipliers. The critical one is on the unit circle, so that no verdict is given.
+    pub points: Vec<Point>,
     /// Its special points, in the order of the curve.
     pub special: Vec<Special>,
     /// Why it ended on both sides.
     pub ends: [Stop; 2],
-}
-
-/// One bifurcation of a curve.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct BifurcationCurvePoint {
-    /// Values of the two parameters.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub values: [f64; 2],
-    /// The state `(q, dq/dt)` at phase zero.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub state: Vec<f64>,
-    /// Floquet multipliers over the period, largest modulus first.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub multipliers: Vec<Complex<f64>>,
-    /// How often a gap crosses a level in a period.
-    pub switches: usize,
 }
 
 /// A special point of a curve.
@@ -133,7 +116,7 @@ const SHORTEST: f64 = 1e-5;
 
 /// Half of a curve, as it is followed.
 struct Half {
-    points: Vec<BifurcationCurvePoint>,
+    points: Vec<Point>,
     special: Vec<Special>,
     end: Stop,
 }
@@ -148,7 +131,7 @@ impl Half {
     }
 
     /// Points and special points of this half from its end to the event, and of the other one from there on.
-    fn joined(mut self, forth: Self) -> (Vec<BifurcationCurvePoint>, Vec<Special>) {
+    fn joined(mut self, forth: Self) -> (Vec<Point>, Vec<Special>) {
         let count = self.points.len();
         self.points.reverse();
         self.special.reverse();
@@ -178,10 +161,12 @@ pub(crate) fn track(
 ) -> Result<BifurcationCurve, Error> {
     check_inside(event, plane)?;
     let mut back = half(problem, event, plane, -1.0, visit)?;
-    let track = |points, special, ends| BifurcationCurve {
+    let values = |point: &Point| [point.value, second_of(point, plane.second)];
+    let track = |points: Vec<Point>, special, ends| BifurcationCurve {
         kind: event.kind,
         names: [problem.varied.clone(), plane.name.clone()],
         period: event.point.orbit.period,
+        values: points.iter().map(values).collect(),
         points,
         special,
         ends,
@@ -209,7 +194,7 @@ pub(crate) fn track(
 
 /// The event is inside the ranges of both parameters.
 fn check_inside(event: &Event, plane: &Plane<'_>) -> Result<(), Error> {
-    let at = [event.point.value, second_of(event, plane.second)];
+    let at = [event.point.value, second_of(&event.point, plane.second)];
     for ((value, range), name) in at.into_iter().zip(plane.ranges).zip(["from", "within"]) {
         if value < range[0].min(range[1]) || value > range[0].max(range[1]) {
             let must = "is the value at the event, and must be inside the range of the curve";
@@ -256,9 +241,11 @@ fn half(
             let known = monitor.points.len();
             monitor.visit(curve, newton, &seen)?;
             let shown = monitor.points[known..].iter().zip(known + 1..);
-            let mut shown = shown.map(|(point, done)| (point.values[0], done));
-            if shown.any(|(value, done)| visit(Progress::at(Stage::Curve, done, value)).is_break())
-            {
+            let mut shown = shown.map(|(point, done)| Progress {
+                point: Some(point),
+                ..Progress::at(Stage::Curve, done, point.value)
+            });
+            if shown.any(|progress| visit(progress).is_break()) {
                 interrupted = true;
                 return Continue::Break(Halt::Stop);
             }
@@ -296,11 +283,11 @@ fn first_point(
     CurvePoint { u, tangent, scale }
 }
 
-/// The value of the second parameter at an event.
-fn second_of(event: &Event, second: Variable) -> f64 {
+/// The value of the second parameter at an orbit.
+fn second_of(point: &Point, second: Variable) -> f64 {
     match second {
-        Variable::Omega => event.point.orbit.omega,
-        Variable::Parameter(index) => event.point.parameters[index],
+        Variable::Omega => point.orbit.omega,
+        Variable::Parameter(index) => point.parameters[index],
     }
 }
 
@@ -327,7 +314,7 @@ fn curve<'a>(
         }
         _ => return Err(nothing.into()),
     };
-    u.push(second_of(event, plane.second));
+    u.push(second_of(point, plane.second));
     let size = point.size();
     let [first, second] = plane.ranges.map(|range| (range[1] - range[0]).abs());
     let curve = Curve::new(equations, plane.second, condition, [size, first, second]);

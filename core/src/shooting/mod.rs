@@ -47,7 +47,7 @@ pub(crate) mod tested;
 mod tests;
 
 pub(crate) use bifurcation_curve::Plane;
-pub use bifurcation_curve::{BifurcationCurve, BifurcationCurvePoint, Special, SpecialKind};
+pub use bifurcation_curve::{BifurcationCurve, Special, SpecialKind};
 pub(crate) use broken_symmetry::breaks;
 pub(crate) use checked::Asked;
 pub use options::Shooting;

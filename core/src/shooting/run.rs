@@ -296,30 +296,39 @@ pub(super) fn observe(
         None
     };
     let switches = equations.flow.work().switches - before;
-    let Recurrence { period, parts, .. } = recurrence;
     extremes::over_images(&mut extremes, &recurrence.image);
     let point = Point {
         value,
         parameters: problem.parameters_at(value),
-        orbit: Orbit {
-            series: Vec::new(),
-            states: equations.states_of(u),
-            coordinates: extremes.len(),
-            omega: problem.omega_at(value),
-            base: rate / period as f64,
-            period,
-            parts,
-            symmetric: recurrence.image.is_minus(),
-            image: recurrence.image,
-        },
+        orbit: orbit_of(equations, u, problem.omega_at(value), rate),
         stability: Stability::unknown(),
         observed: Observed {
             outputs: outputs.map_or_else(Vec::new, Reader::motions),
-            ..Observed::extremes(extremes, switches * parts)
+            ..Observed::extremes(extremes, switches * recurrence.parts)
         },
         error: None,
     };
     Ok((point, map))
+}
+
+/// The orbit of a solution at an excitation frequency, whose phase moves so fast.
+pub(super) fn orbit_of(equations: &Equations, u: &[f64], omega: f64, rate: f64) -> Orbit {
+    let Recurrence {
+        period,
+        parts,
+        image,
+    } = equations.span.recurrence.clone();
+    Orbit {
+        series: Vec::new(),
+        states: equations.states_of(u),
+        coordinates: equations.order() / 2,
+        omega,
+        base: rate / period as f64,
+        period,
+        parts,
+        symmetric: image.is_minus(),
+        image,
+    }
 }
 
 /// Why there is no orbit.

@@ -12,21 +12,26 @@
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, chapter 9 (bifurcations of codimension two of fixed points).
 
-use super::bifurcation_curve::{BifurcationCurvePoint, Plane, Special, SpecialKind};
+use super::bifurcation_curve::{Plane, Special, SpecialKind};
 use super::codimension_one::{Condition, Curve};
+use super::extremes;
 use super::generalised_flip::HalfPeriodDifference;
 use super::normal_form::CubicCoefficient;
 use super::problem::ShootingProblem;
-use super::run::no_orbit;
+use super::run::{no_orbit, orbit_of};
 use super::special_search::{
     Counted, Criterion, Function, Place, ReferenceCurve, Search, TestFunctions, Tests, apart,
     values,
 };
 use crate::branches::moduli::multipliers;
+use crate::branches::observed::{Motion, Observed};
+use crate::branches::point::Point;
+use crate::branches::stability::Stability;
 use crate::continuation::follow::{Continue, CurvePoint, Halt, Outcome, Step, Stop, Visit};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::error::Error;
-use crate::time::FlowError;
+use crate::system::Variable;
+use crate::time::{FlowError, Stretch};
 
 /// A slope of the second parameter counts as none below this, and that of the first, where the second has none, below the other.
 pub(super) const VANISHED: f64 = 1e-9;
@@ -46,7 +51,7 @@ pub(super) struct SpecialMonitor<'p, 'a> {
     pub(super) functions: TestFunctions<'p>,
     /// The last two points.
     seen: [Option<Tests>; 2],
-    pub(super) points: Vec<BifurcationCurvePoint>,
+    pub(super) points: Vec<Point>,
     pub(super) special: Vec<Special>,
     /// What the last orbit has that one of half the period has not, on a curve of folds.
     pub(super) halved: Option<HalfPeriodDifference>,
@@ -146,24 +151,54 @@ impl<'p, 'a> SpecialMonitor<'p, 'a> {
             self.joined = true;
             return Continue::Continue(());
         }
-        let point = Self::point(curve, &at.u, &counted);
-        self.points.push(point);
+        match self.point(curve, &at.u, &counted) {
+            Ok(point) => self.points.push(point),
+            Err(reason) => {
+                self.failure = Some(reason);
+                return Continue::Break(Halt::Stop);
+            }
+        }
         let tests = self.functions.at(curve, at, &counted);
         self.seen = [self.seen[1], tests];
         Continue::Continue(())
     }
 
     /// A point with what is read off it.
-    fn point(curve: &Curve<'_>, u: &[f64], counted: &Counted) -> BifurcationCurvePoint {
-        let parts = curve.equations.span.recurrence.parts;
+    ///
+    /// # Errors
+    /// If its motion cannot be computed.
+    fn point(
+        &self,
+        curve: &mut Curve<'_>,
+        u: &[f64],
+        counted: &Counted,
+    ) -> Result<Point, FlowError> {
         let last = u.len() - 1;
-        let states = curve.equations.states_of(&u[..last]);
-        BifurcationCurvePoint {
-            values: [u[last - 1], u[last]],
-            state: states[..curve.equations.order()].to_vec(),
-            multipliers: multipliers(&counted.map, parts),
-            switches: counted.switches * parts,
+        let [value, second] = [u[last - 1], u[last]];
+        let mut parameters = self.problem.parameters_at(value);
+        let mut omega = self.problem.omega_at(value);
+        match curve.second {
+            Variable::Omega => omega = second,
+            Variable::Parameter(index) => parameters[index] = second,
         }
+        let rate = omega / f64::from(self.problem.divisor);
+        let equations = &mut curve.equations;
+        let mut motions = vec![Motion::NONE; equations.order() / 2];
+        let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut motions);
+        equations.trace(&u[..last], see)?;
+        let recurrence = &equations.span.recurrence;
+        extremes::over_images(&mut motions, &recurrence.image);
+        Ok(Point {
+            value,
+            parameters,
+            stability: Stability {
+                multipliers: multipliers(&counted.map, recurrence.parts),
+                ..Stability::unknown()
+            },
+            observed: Observed::extremes(motions, counted.switches * recurrence.parts),
+            orbit: orbit_of(equations, &u[..last], omega, rate),
+            error: None,
+        })
     }
 
     /// What is special between two points.
@@ -340,7 +375,7 @@ impl<'p, 'a> SpecialMonitor<'p, 'a> {
             _ if self.joined => Stop::JoinedDoublings,
             (Err(reason), failure) => return Err(no_orbit(value, reason, failure)),
             (Ok(Outcome::Stopped(Stop::StepTooShort { .. } | Stop::Interrupted)), Some(reason)) => {
-                let value = self.points.last().map_or(value, |last| last.values[0]);
+                let value = self.points.last().map_or(value, |last| last.value);
                 Stop::Motion { value, reason }
             }
             (Ok(Outcome::Stopped(Stop::LeftAtStart)), _) => Stop::ReachedEnd,

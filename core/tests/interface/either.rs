@@ -76,7 +76,7 @@ fn a_branch_answers_alike_by_both_methods() {
         // A curve in two parameters goes on from either, and is the same one.
         let curves = [(&by_balance, a), (&by_shooting, b)]
             .map(|(branch, event)| branch.track(event, "drive", [0.05, 0.15]).expect("a curve"));
-        let ends = curves.map(|curve| curve.points.last().expect("points").values);
+        let ends = curves.map(|curve| *curve.values.last().expect("points"));
         assert!((ends[0][0] - ends[1][0]).abs() < 1e-8, "{ends:?}");
     }
 }

@@ -116,8 +116,8 @@ impl Plane<'_> {
                 tracks.extend(curve.ok().map(|curve| {
                     Track {
                         kind,
-                        points: (curve.points.iter())
-                            .map(|point| [point.values[axis], point.values[1 - axis]])
+                        points: (curve.values.iter())
+                            .map(|values| [values[axis], values[1 - axis]])
                             .collect(),
                     }
                 }));

@@ -377,10 +377,10 @@ fn grazing_is_tracked_in_two_parameters() {
     let tracks = all["tracks"].as_array().expect("tracks");
     assert_eq!(tracks.len(), 1);
     assert!(tracks[0]["kind"]["grazing"].is_object());
-    let points = tracks[0]["points"].as_array().expect("points");
-    let drives = points
+    let values = tracks[0]["values"].as_array().expect("values");
+    let drives = values
         .iter()
-        .map(|point| point["values"][1].as_f64().expect("a number"));
+        .map(|pair| pair[1].as_f64().expect("a number"));
     let drives: Vec<f64> = drives.collect();
     assert!(drives.len() > 20);
     for end in [drives[0], drives[drives.len() - 1]] {

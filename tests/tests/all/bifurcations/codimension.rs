@@ -25,11 +25,14 @@ fn a_linear_contact_is_lost_on_a_known_curve() {
         .unwrap();
     let track = shooting.track(grazing, "drive", [0.07, 0.4]).unwrap();
     assert!(track.points.len() > 10, "{:?}", track.ends);
-    for point in &track.points {
-        let [omega, drive] = point.values;
+    for (&[omega, drive], point) in track.values.iter().zip(&track.points) {
         let square = (1.0 - omega * omega).powi(2) + (2.0 * zeta * omega).powi(2);
         let error = (drive - load * square.sqrt()).abs();
         assert!(error < 1e-10, "{omega} {drive} {error:.1e}");
+        // The least position is that of the contact, and the mean is the load.
+        let size = point.peak_to_peak();
+        assert!((size - 2.0 * load).abs() < 1e-8, "{omega} {size}");
+        assert_eq!((point.omega(), point.value), (omega, omega));
     }
 }
 

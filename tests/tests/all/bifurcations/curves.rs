@@ -29,8 +29,8 @@ fn model(hertz: bool, drive: f64) -> Box<dyn System> {
 fn assert_confirmed(track: &BifurcationCurve, hertz: bool) {
     for index in 1..=5 {
         let part = (f64::from(index) * 0.618_033_988_749_895).fract();
-        let point = &track.points[(part * track.points.len() as f64) as usize];
-        let [omega, drive] = point.values;
+        let index = (part * track.points.len() as f64) as usize;
+        let [omega, drive] = track.values[index];
         let model = model(hertz, drive);
         // The branch is on one side of a fold, and close to another fold it is short.
         let starts = [2e-4, 2e-5, 2e-3].iter().flat_map(|part| [-part, *part]);
@@ -39,7 +39,7 @@ fn assert_confirmed(track: &BifurcationCurve, hertz: bool) {
             let near = FrequencyResponse::of(&*model)
                 .by(Shooting::new())
                 .period(track.period)
-                .near_state(&point.state);
+                .near_state(&track.points[index].orbit.state());
             let branch = near.from(aside(part)).to(aside(-part)).run().ok()?;
             let values = branch.events(track.kind).map(|event| event.point.value);
             nearest(values, omega, |value| *value)
@@ -100,10 +100,11 @@ fn folds_of_a_hertzian_contact() {
     let grazing: Vec<_> = grazing.collect();
     assert_eq!(grazing.len(), 2);
     for special in grazing {
-        let [before, behind] = [special.after - 1, special.after].map(|i| &track.points[i]);
-        assert_ne!(before.switches, behind.switches);
+        let beside = [special.after - 1, special.after];
+        let [before, behind] = beside.map(|i| track.points[i].observed.switches);
+        assert_ne!(before, behind);
         for k in 0..2 {
-            let ends = [before.values[k], behind.values[k]];
+            let ends = beside.map(|i| track.values[i][k]);
             let range = ends[0].min(ends[1])..=ends[0].max(ends[1]);
             assert!(range.contains(&special.values[k]), "{special:?} {ends:?}");
         }

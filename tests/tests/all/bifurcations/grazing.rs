@@ -85,12 +85,12 @@ fn curves(
 fn assert_touches(track: &BifurcationCurve, model: impl Fn(f64) -> Box<dyn System>) {
     for index in 1..=5 {
         let part = (f64::from(index) * 0.618_033_988_749_895).fract();
-        let point = &track.points[(part * track.points.len() as f64) as usize];
-        let [omega, second] = point.values;
+        let index = (part * track.points.len() as f64) as usize;
+        let [omega, second] = track.values[index];
         let model = model(second);
         let near = FrequencyResponse::of(&*model)
             .by(Shooting::new())
-            .near_state(&point.state);
+            .near_state(&track.points[index].orbit.state());
         // Beside a fold a branch is short.
         let mut parts = [1e-4, -1e-4, 1e-5, -1e-5, 1e-6, -1e-6].into_iter();
         let found = parts.any(|part| {
@@ -120,7 +120,7 @@ fn a_hertzian_contact_is_lost_on_one_curve() {
     }
     // Both events are on one curve, which leaves the range at the same two places.
     let ends = |track: &BifurcationCurve| {
-        let mut ends = [0, track.points.len() - 1].map(|index| track.points[index].values);
+        let mut ends = [0, track.points.len() - 1].map(|index| track.values[index]);
         ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
         ends
     };
