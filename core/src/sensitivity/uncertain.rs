@@ -67,7 +67,7 @@ impl Uncertain {
     }
 
     /// Whether it is a part of the value.
-    pub(crate) fn is_relative(&self) -> bool {
+    pub fn is_relative(&self) -> bool {
         self.is_relative
     }
 
