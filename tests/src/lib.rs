@@ -1,9 +1,11 @@
 //! Tests of hertzian across its crates, and what several of them need.
 
 pub mod dormand_prince;
+pub mod passage;
 #[path = "../../core/src/testing/random.rs"]
 pub mod random;
 pub mod reference;
+pub mod tableau;
 
 use hertzian::Complex;
 

@@ -27,6 +27,11 @@ pub fn bar(elements: usize, free: bool) -> SparseStructure {
 
 /// A cantilever of unit length, bending stiffness and mass in equal Hermite elements: coordinates are deflection and slope of each node.
 pub fn beam(elements: usize) -> SparseStructure {
+    beam_of(elements, false)
+}
+
+/// The same, clamped or free at its beginning.
+pub fn beam_of(elements: usize, free: bool) -> SparseStructure {
     let h = 1.0 / elements as f64;
     let stiffness = [
         [12.0, 6.0 * h, -12.0, 6.0 * h],
@@ -40,13 +45,14 @@ pub fn beam(elements: usize) -> SparseStructure {
         [54.0, 13.0 * h, 156.0, -22.0 * h],
         [-13.0 * h, -3.0 * h * h, -22.0 * h, 4.0 * h * h],
     ];
-    let n = 2 * elements;
+    let clamped = if free { 0 } else { 2 };
+    let n = 2 * elements + 2 - clamped;
     let of = |element: [[f64; 4]; 4], factor: f64| {
         let mut entries = Vec::new();
         for e in 0..elements {
             for (i, row) in element.iter().enumerate() {
                 for (j, value) in row.iter().enumerate() {
-                    let place = |k: usize| (2 * e + k).checked_sub(2);
+                    let place = |k: usize| (2 * e + k).checked_sub(clamped);
                     if let (Some(i), Some(j)) = (place(i), place(j)) {
                         entries.push((i, j, factor * value));
                     }

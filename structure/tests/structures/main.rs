@@ -4,5 +4,6 @@ mod common;
 mod events;
 mod files;
 mod outputs;
+mod random;
 mod reduction;
 mod reference;

@@ -11,7 +11,7 @@
 use std::f64::consts::TAU;
 
 use crate::differential::model::{CONTACTS, COORDINATES, Model, Pieces, State, Variable};
-use crate::differential::tableau::{A, B, C, LOWER, STAGES};
+use hertzian_tests::tableau::{A, B, C, LOWER, STAGES};
 
 /// Steps of one motion at most.
 const STEPS: usize = 400_000;

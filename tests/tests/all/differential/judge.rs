@@ -16,9 +16,9 @@ use hertzian_tests::random::Random;
 
 use crate::differential::draw;
 use crate::differential::model::Model;
-use crate::differential::passage::{Passage, Walked, as_far, matched};
 use crate::differential::report::{Kind, Report};
 use crate::differential::truth::{Question, Settles, settles};
+use hertzian_tests::passage::{Passage, Walked, as_far, matched};
 
 /// Points of a branch by the balance and by shooting at most.
 const POINTS: [usize; 2] = [120, 80];

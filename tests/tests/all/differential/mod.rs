@@ -19,9 +19,7 @@ mod laws;
 mod model;
 mod multiple_shooting;
 mod orbits;
-mod passage;
 mod report;
-mod tableau;
 mod truth;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

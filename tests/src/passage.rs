@@ -14,9 +14,13 @@ const AT_END: f64 = 0.02;
 /// An event of a branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seen {
+    /// What happens there.
     pub kind: EventKind,
+    /// Value of what is varied.
     pub value: f64,
+    /// Of the value, as it is stated.
     pub error: f64,
+    /// Of the first coordinate.
     pub peak_to_peak: f64,
     /// Number of points before it.
     pub after: usize,
@@ -25,10 +29,13 @@ pub struct Seen {
 /// A point of a branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
+    /// Value of what is varied.
     pub value: f64,
+    /// Of the first coordinate.
     pub peak_to_peak: f64,
     /// Of peak-to-peak, as it is stated.
     pub error: f64,
+    /// Whether it is stable.
     pub verdict: Verdict,
     /// Largest modulus of a multiplier and its error.
     pub modulus: [f64; 2],
@@ -51,9 +58,13 @@ impl Place {
 /// A branch from one end of the range on.
 #[derive(Debug, Clone)]
 pub struct Passage {
+    /// How it was found.
     pub name: &'static str,
+    /// Its points in their order.
     pub places: Vec<Place>,
+    /// Its events in their order.
     pub events: Vec<Seen>,
+    /// Where it turns.
     pub turns: Vec<Turn>,
     /// Whether it came to the other end.
     pub whole: bool,
@@ -64,6 +75,7 @@ pub struct Passage {
 }
 
 impl Passage {
+    /// Of a branch.
     pub fn of(name: &'static str, branch: &Branch) -> Self {
         let places = branch.points.iter().map(Place::of);
         let events = branch.events.iter().map(|event| Seen {
@@ -152,8 +164,11 @@ pub fn as_far(one: &Walked<'_>, other: &Walked<'_>) -> Option<[Passage; 2]> {
 
 /// A passage with its branch, values of which are so many times as large in the units of the passage, and positions.
 pub struct Walked<'b> {
+    /// In its own units.
     pub passage: Passage,
+    /// The branch.
     pub branch: &'b Branch,
+    /// Of values and positions.
     pub units: [f64; 2],
 }
 

@@ -1,0 +1,625 @@
+//! One structure: its branch with all modes and with few, compared with what is true of some orbits, and with shooting.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use hertzian::error::{ErrorKind, chain};
+use hertzian::structure::Structure;
+use hertzian::system::{Place, Signal};
+use hertzian::{
+    Branch, ContactEquation, Error, FrequencyResponse, OrbitMethod, Point, Shooting, Stability,
+    System, Verdict,
+};
+use hertzian_structure::{Direction, Reduced, Reduction, SparseStructure};
+use hertzian_tests::passage::{Passage, matched};
+use hertzian_tests::random::Random;
+use nalgebra::{DMatrix, DVector};
+
+use super::draw::{self, Drawn};
+use super::laws::Law;
+use super::report::{Kind, Report};
+use super::truth::{Question, Truth, Unsure};
+
+/// Points of a branch at most.
+const POINTS: usize = 60;
+/// Orbits of a branch that are looked at: of the whole structure, and of a reduced one.
+const ORBITS: [usize; 2] = [3, 2];
+/// Time of the processor that a branch may take. What is begun is ended, so that some take longer.
+const BUDGET: Duration = Duration::from_secs(2);
+/// How far from the true orbit a state may be, relative to the size.
+const NEAR: f64 = 1e-2;
+/// Up to so many coordinates events are compared with those of shooting.
+const SMALL: usize = 6;
+
+/// One structure at work.
+pub struct Case {
+    index: u64,
+    drawn: Drawn,
+    sparse: SparseStructure,
+    random: Random,
+    report: Report,
+}
+
+/// What was asked of errors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Asked {
+    /// Of all coordinates, which are amplitudes of modes.
+    Modes,
+    /// Of the first output.
+    Tip,
+}
+
+/// Time of the processor that a branch has taken.
+struct Clock {
+    begun: Duration,
+    out: Cell<bool>,
+}
+
+impl Clock {
+    fn new() -> Self {
+        Self {
+            begun: now(),
+            out: Cell::new(false),
+        }
+    }
+
+    fn flow(&self) -> ControlFlow<()> {
+        if now().saturating_sub(self.begun) > BUDGET {
+            self.out.set(true);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// What this thread has worked, where the system tells (Linux does), or the time.
+fn now() -> Duration {
+    thread_local! {
+        static STARTED: Instant = Instant::now();
+    }
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let spent = text.split_whitespace().next().and_then(|t| t.parse().ok());
+    spent.map_or_else(|| STARTED.with(Instant::elapsed), Duration::from_nanos)
+}
+
+/// The structure with all modes.
+struct Whole {
+    model: Structure,
+    /// Coordinates by amplitudes of modes.
+    modes: DMatrix<f64>,
+    /// What is watched of true orbits: amplitudes of modes, and the tip.
+    watched: DMatrix<f64>,
+}
+
+impl Case {
+    pub fn of(index: u64) -> Self {
+        let drawn = draw::structure(index);
+        Self {
+            index,
+            sparse: drawn.of_library(),
+            random: Random::of(!index),
+            drawn,
+            report: Report::default(),
+        }
+    }
+
+    pub fn text(&self) -> String {
+        self.drawn.text()
+    }
+
+    /// What it comes to.
+    pub fn judged(mut self) -> Report {
+        let begun = now();
+        self.report.count("structures");
+        match self.whole() {
+            Ok(whole) => self.compare(&whole),
+            Err(error) => self.find(Kind::Refused, error.to_string()),
+        }
+        if !self.report.findings.is_empty() {
+            self.report.texts.insert(self.index, self.text());
+        }
+        let spent = now().saturating_sub(begun).as_secs_f64();
+        self.report.times.push((spent, self.index));
+        self.report
+    }
+
+    fn find(&mut self, kind: Kind, text: String) {
+        self.report.find(kind, self.index, text);
+    }
+
+    fn highest(&self) -> f64 {
+        self.drawn.range[0].max(self.drawn.range[1])
+    }
+
+    fn whole(&self) -> Result<Whole, Box<dyn std::error::Error>> {
+        let n = self.drawn.size();
+        let reduction = Reduction::to(self.highest()).modes(n).steps(0);
+        let model = reduction.run(&self.sparse)?.structure(&self.sparse)?;
+        // The same modes, read at all coordinates.
+        let read = (0..n).fold(self.sparse.clone(), |read, i| {
+            read.output(&format!("x{i}"), Direction::at(i))
+        });
+        let read = reduction.run(&read)?.structure(&read)?;
+        let mut coefficients = vec![0.0; read.facts().places.len()];
+        read.coefficients(&[], 1.0, &mut coefficients);
+        let mut modes = DMatrix::zeros(n, n);
+        for (place, value) in read.facts().places.iter().zip(coefficients) {
+            if let Place::Output {
+                output,
+                of: Signal::Coordinate(mode),
+                ..
+            } = place
+                && (1..=n).contains(output)
+            {
+                modes[(output - 1, *mode)] = value;
+            }
+        }
+        let mut watched = DMatrix::zeros(n + 1, n);
+        watched
+            .rows_mut(0, n)
+            .copy_from(&(modes.transpose() * &self.drawn.mass));
+        watched.row_mut(n).copy_from(&self.drawn.tip.transpose());
+        Ok(Whole {
+            model,
+            modes,
+            watched,
+        })
+    }
+
+    fn compare(&mut self, whole: &Whole) {
+        // By what a request takes by itself, or by what the program takes.
+        let asked = if !self.drawn.held || self.index.is_multiple_of(2) {
+            Asked::Modes
+        } else {
+            Asked::Tip
+        };
+        let Some(branch) = self.branch(&whole.model, asked) else {
+            return;
+        };
+        self.orbits(whole, &branch, asked);
+        if self.drawn.size() > 2 {
+            self.reduced(whole, &branch);
+        }
+        if self.drawn.held && self.drawn.size() <= SMALL {
+            self.events(whole, &branch);
+        }
+    }
+
+    /// The branch over the range.
+    fn branch(&mut self, model: &Structure, asked: Asked) -> Option<Branch> {
+        let jumps = |law: &Law| matches!(law, Law::Damped { .. });
+        let mut laws = self.drawn.contacts.iter().map(|contact| contact.law);
+        let closed = laws.clone().all(|law| law.is_affine()) || laws.any(|law| jumps(&law));
+        let request = FrequencyResponse::of(model);
+        let found = match asked {
+            Asked::Modes => self.followed(request),
+            Asked::Tip if closed => self.followed(request.by(Shooting::new()).accuracy_of("tip")),
+            Asked::Tip => self.followed(request.by(ContactEquation::new()).accuracy_of("tip")),
+        };
+        match found {
+            Ok(branch) => {
+                let passage = Passage::of("the branch", &branch);
+                for text in passage.unexplained() {
+                    self.find(Kind::ChangeWithoutEvent, text);
+                }
+                self.report.count(match branch.method() {
+                    Some("shooting") => "branches by shooting",
+                    Some("contact equation") => "branches by the contact equation",
+                    _ => "branches by the balance",
+                });
+                if !passage.whole && !passage.cut {
+                    self.report
+                        .count("branches that ended before the end of the range");
+                }
+                Some(branch)
+            }
+            Err(error) => {
+                self.no_branch(&error);
+                None
+            }
+        }
+    }
+
+    fn followed<M: OrbitMethod>(&mut self, request: FrequencyResponse<M>) -> Result<Branch, Error> {
+        let [from, to] = self.drawn.range;
+        let clock = Clock::new();
+        let found = request
+            .from(from)
+            .to(to)
+            .max_points(POINTS)
+            .run_with(|_| clock.flow());
+        eprintln!(
+            "T {} n {} branch {:.2} {:?} of {}",
+            self.index,
+            self.drawn.size(),
+            (now() - clock.begun).as_secs_f64(),
+            found
+                .as_ref()
+                .map(|b| (b.method(), b.points.len(), b.stopped.to_string())),
+            clock.out.get()
+        );
+        if clock.out.get() {
+            self.report.count("branches that ran out of time");
+        }
+        found
+    }
+
+    fn no_branch(&mut self, error: &Error) {
+        match error.kind() {
+            ErrorKind::NoOrbit => self.report.count("branches without a first orbit"),
+            ErrorKind::Limit => self
+                .report
+                .count("branches without a first orbit within the limit"),
+            ErrorKind::Motion => self
+                .report
+                .count("branches that did not begin: a motion was lost"),
+            _ => self.find(Kind::Refused, chain(error).to_string()),
+        }
+    }
+
+    /// Some points: anywhere, and an unstable one.
+    fn chosen(&mut self, branch: &Branch, count: usize) -> Vec<usize> {
+        let points = &branch.points;
+        let unstable = |index: &usize| points[*index].stability.verdict == Verdict::Unstable;
+        let unstable: Vec<usize> = (0..points.len()).filter(unstable).collect();
+        let mut chosen = Vec::new();
+        for turn in 0..count.min(points.len()) {
+            chosen.push(if turn == 1 && !unstable.is_empty() {
+                unstable[self.random.below(unstable.len())]
+            } else {
+                self.random.below(points.len())
+            });
+        }
+        chosen.sort_unstable();
+        chosen.dedup();
+        chosen
+    }
+
+    /// The true orbit near one of the structure with all modes.
+    fn truth(&mut self, whole: &Whole, point: &Point) -> Option<Truth> {
+        let n = self.drawn.size();
+        let state = point.orbit.state();
+        let mut guess = DVector::zeros(2 * n);
+        for part in 0..2 {
+            let amplitudes = DVector::from_column_slice(&state[part * n..(part + 1) * n]);
+            guess
+                .rows_mut(part * n, n)
+                .copy_from(&(&whole.modes * amplitudes));
+        }
+        let question = Question {
+            drawn: &self.drawn,
+            watched: &whole.watched,
+            omega: point.omega(),
+            period: point.orbit.period,
+        };
+        let stated = point.error.unwrap_or(0.0);
+        let begun = now();
+        let found = question.truth(&guess);
+        eprintln!(
+            "T {} n {} truth {:.2}",
+            self.index,
+            n,
+            (now() - begun).as_secs_f64()
+        );
+        match found {
+            Ok(truth)
+                if truth.correction > NEAR.max(6.0 * stated)
+                    && truth.error < 0.1 * truth.correction =>
+            {
+                let text = format!(
+                    "at {:?}: the true one is {:.1e} of its size away",
+                    point.value, truth.correction
+                );
+                self.find(Kind::Elsewhere, text);
+                None
+            }
+            Ok(truth) if truth.error > 1e-4 => {
+                self.report.count("orbits, the truth of which is not sure");
+                None
+            }
+            Ok(truth) => Some(truth),
+            Err(unsure) => {
+                self.unsure(unsure, point);
+                None
+            }
+        }
+    }
+
+    fn unsure(&mut self, unsure: Unsure, point: &Point) {
+        self.report.count(match unsure {
+            Unsure::Lost(_) => "orbits, the motion of which was lost",
+            Unsure::Singular => "orbits with a multiplier of one",
+            Unsure::Open(_) => "orbits that did not close",
+            Unsure::Touching => "orbits too near a level to be disturbed",
+            Unsure::Growing => "orbits of a multiplier too large to close",
+        });
+        if let Unsure::Open(left) = unsure
+            && left > NEAR.max(6.0 * point.error.unwrap_or(0.0))
+        {
+            let text = format!("at {:?}: {left:.1e} of its size open", point.value);
+            self.find(Kind::NotClosed, text);
+        }
+    }
+
+    /// Orbits of the structure with all modes.
+    fn orbits(&mut self, whole: &Whole, branch: &Branch, asked: Asked) {
+        for index in self.chosen(branch, ORBITS[0]) {
+            let point = &branch.points[index];
+            self.report.count("orbits");
+            let Some(truth) = self.truth(whole, point) else {
+                continue;
+            };
+            let name = format!("{} at {:?}", branch.method().unwrap_or("?"), point.value);
+            self.verdict(&name, &truth, &point.stability);
+            let Some(stated) = point.error.filter(|error| error.is_finite()) else {
+                self.report.count("orbits without a stated error");
+                continue;
+            };
+            let of = match asked {
+                Asked::Modes => of_modes(point, &truth, stated),
+                Asked::Tip => {
+                    let Ok(tip) = branch.reading("tip", point) else {
+                        self.find(Kind::Refused, format!("{name}: no reading of the tip"));
+                        continue;
+                    };
+                    of_one(
+                        tip.motion.peak_to_peak(),
+                        &truth,
+                        self.drawn.size(),
+                        [stated, self.drawn.tip.abs().sum()],
+                    )
+                }
+            };
+            self.ratio(("orbits of all modes", Kind::Orbit), &name, of);
+        }
+    }
+
+    /// A true error, the stated one, and what the true one is known to.
+    fn ratio(
+        &mut self,
+        (of, kind): (&'static str, Kind),
+        name: &str,
+        [error, stated, unsure]: [f64; 3],
+    ) {
+        let ratio = (error - unsure).max(0.0) / stated;
+        if ratio > 3.0 {
+            let text =
+                format!("{name}: {error:.2e} true (known to {unsure:.0e}), {stated:.2e} stated");
+            self.find(kind, text);
+        }
+        self.report.ratio(of, ratio);
+    }
+
+    fn verdict(&mut self, name: &str, truth: &Truth, stability: &Stability) {
+        let mut known = truth.multipliers.clone();
+        for _ in 0..stability.rigid {
+            let one = |i: &usize| (known[*i] - 1.0).norm();
+            if let Some(i) = hertzian_tests::nearest(0..known.len(), 0.0, one) {
+                known.remove(i);
+            }
+        }
+        let exact = known.first().map_or(0.0, |m| m.norm());
+        let (stated, unsure) = (stability.error, truth.multiplier_error);
+        let margin = match stability.verdict {
+            Verdict::Stable => exact - 1.0,
+            Verdict::Unstable => 1.0 - exact,
+            Verdict::Undecided => {
+                self.report.count("verdicts undecided");
+                return;
+            }
+        };
+        if margin > unsure {
+            let largest = stability.multipliers[0].norm();
+            let text = format!(
+                "{name}: {}, |mu| {largest:.9} +- {stated:.1e}; it is {exact:.9} +- {unsure:.0e}",
+                stability.verdict
+            );
+            self.find(Kind::FalseVerdict, text);
+        } else if margin.abs() < unsure {
+            self.report.count("verdicts that the truth leaves open");
+        } else {
+            self.report.count("verdicts that are right");
+        }
+        if known.len() != stability.multipliers.len() {
+            self.find(
+                Kind::Refused,
+                format!(
+                    "{name}: {} multipliers, not {}",
+                    stability.multipliers.len(),
+                    known.len()
+                ),
+            );
+            return;
+        }
+        let error = hertzian_tests::distance(&stability.multipliers, &known);
+        self.ratio(
+            ("multipliers of all modes", Kind::Multipliers),
+            name,
+            [error, stated, unsure],
+        );
+    }
+
+    /// Fewer modes than all, against the whole structure.
+    fn reduced(&mut self, whole: &Whole, branch: &Branch) {
+        let n = self.drawn.size();
+        let kept = self.drawn.rigid + 1 + self.random.below(n - 1 - self.drawn.rigid.min(n - 2));
+        let reduction = Reduction::to(self.highest()).modes(kept.min(n - 1));
+        let reduction = match self.random.below(3) {
+            0 => reduction.steps(1),
+            1 => reduction.steps(2),
+            _ => reduction,
+        };
+        let reduced = match reduction.run(&self.sparse) {
+            Ok(reduced) => reduced,
+            Err(error) => return self.find(Kind::Refused, format!("reduced: {error}")),
+        };
+        if reduced.vectors() == n {
+            self.report.count("reductions that leave nothing out");
+            return;
+        }
+        let model = match reduced.structure(&self.sparse) {
+            Ok(model) => model,
+            Err(error) => return self.find(Kind::Refused, format!("reduced: {error}")),
+        };
+        let asked = if self.drawn.held {
+            Asked::Tip
+        } else {
+            Asked::Modes
+        };
+        let Some(few) = self.branch(&model, asked) else {
+            return;
+        };
+        for index in self.chosen(&few, ORBITS[1]) {
+            self.report.count("reduced orbits");
+            self.of_reduced(whole, branch, &reduced, (&few, &few.points[index]));
+        }
+    }
+
+    fn of_reduced(
+        &mut self,
+        whole: &Whole,
+        branch: &Branch,
+        reduced: &Reduced,
+        (few, point): (&Branch, &Point),
+    ) {
+        let size = |branch: &Branch, point: &Point| {
+            let tip = branch.reading("tip", point);
+            tip.map_or(f64::NAN, |tip| tip.motion.peak_to_peak())
+        };
+        // The orbit of the same place among those at this frequency.
+        let of = |branch: &Branch| {
+            let mut points = branch.at(point.value).unwrap_or_default();
+            points.sort_by(|a, b| size(branch, a).total_cmp(&size(branch, b)));
+            points
+        };
+        let (theirs, own) = (of(branch), of(few));
+        let tip = size(few, point);
+        let place = hertzian_tests::nearest(0..own.len(), tip, |i: &usize| size(few, &own[*i]));
+        let Some(place) = place.filter(|_| own.len() == theirs.len()) else {
+            self.report
+                .count("reduced orbits where the whole structure has others");
+            return;
+        };
+        let Some(truth) = self.truth(whole, &theirs[place]) else {
+            return;
+        };
+        let name = format!(
+            "{} of {} vectors by {} at {:?}",
+            reduced.vectors(),
+            self.drawn.size(),
+            few.method().unwrap_or("?"),
+            point.value
+        );
+        self.verdict_of_reduced(&name, &truth, &point.stability);
+        let errors = match reduced.errors_at(&self.sparse, few, point) {
+            Ok(errors) => errors,
+            Err(error) => return self.find(Kind::Refused, format!("{name}: {error}")),
+        };
+        let Some(stated) = point.error.filter(|error| error.is_finite()) else {
+            self.report.count("reduced orbits without a stated error");
+            return;
+        };
+        let stated = stated + errors[0].error;
+        let of = of_one(
+            tip,
+            &truth,
+            self.drawn.size(),
+            [stated, self.drawn.tip.abs().sum()],
+        );
+        self.report.ratio(
+            "true over stated error of reductions that is not small",
+            if of[0] > 1e-9 * tip {
+                of[0] / of[1]
+            } else {
+                0.0
+            },
+        );
+        self.ratio(("reduced orbits", Kind::Reduced), &name, of);
+    }
+
+    fn verdict_of_reduced(&mut self, name: &str, truth: &Truth, stability: &Stability) {
+        let exact = truth.multipliers.first().map_or(0.0, |m| m.norm());
+        let is = match stability.verdict {
+            Verdict::Undecided => return self.report.count("reduced verdicts undecided"),
+            Verdict::Stable => exact < 1.0 + truth.multiplier_error,
+            Verdict::Unstable => exact > 1.0 - truth.multiplier_error,
+        };
+        if is || !self.drawn.held {
+            return self.report.count("reduced verdicts that are right");
+        }
+        let largest = stability.multipliers[0].norm();
+        let text = format!(
+            "{name}: {}, |mu| {largest:.9} +- {:.1e}; it is {exact:.9}",
+            stability.verdict, stability.error
+        );
+        self.find(Kind::FalseReduced, text);
+    }
+
+    /// Events of the branch against those by shooting.
+    fn events(&mut self, whole: &Whole, branch: &Branch) {
+        let request = FrequencyResponse::of(&whole.model).by(Shooting::new());
+        let Ok(other) = self.followed(request) else {
+            self.report.count("branches by shooting that did not begin");
+            return;
+        };
+        let [one, other] = [("the branch", branch), ("shooting", &other)]
+            .map(|(name, branch)| Passage::of(name, branch));
+        if !(one.whole && other.whole) || !one.shares_ends(&other) {
+            self.report.count("pairs of branches that are not compared");
+            return;
+        }
+        self.report.count("pairs of branches");
+        let matched = matched(&one, &other, self.drawn.range);
+        for (alone, missing) in matched.alone.iter().zip([&other, &one]) {
+            for event in alone {
+                self.find(
+                    Kind::OneMethod,
+                    format!("{event} is missing by {}", missing.name),
+                );
+            }
+        }
+        for (ratio, event, seen) in matched.both {
+            if ratio > 3.0 {
+                self.find(Kind::EventValue, format!("{event}, by shooting {seen}"));
+            }
+            self.report.ratio("events", ratio);
+        }
+    }
+}
+
+/// Error of the peak-to-peak of amplitudes of modes, as a part of what is stated of each: true, stated, unsure of the worst one.
+fn of_modes(point: &Point, truth: &Truth, stated: f64) -> [f64; 3] {
+    let motions = &point.observed.motions;
+    let largest = motions
+        .iter()
+        .fold(0.0, |most: f64, motion| most.max(motion.peak_to_peak()));
+    let of = |(mode, motion): (usize, &hertzian::observe::Motion)| {
+        let own = motion.peak_to_peak();
+        let by = if mode == 0 && own > 1e-6 * largest {
+            own
+        } else {
+            largest
+        };
+        let [least, most] = truth.extremes[mode];
+        [
+            (own - (most - least)).abs(),
+            stated * by,
+            truth.extreme_error,
+        ]
+    };
+    let worst = |[error, stated, unsure]: &[f64; 3]| (error - unsure) / stated;
+    let all = motions.iter().enumerate().map(of);
+    all.max_by(|a, b| worst(a).total_cmp(&worst(b)))
+        .unwrap_or_default()
+}
+
+/// The same of the signal that is watched last.
+fn of_one(size: f64, truth: &Truth, watched: usize, [stated, parts]: [f64; 2]) -> [f64; 3] {
+    let [least, most] = truth.extremes[watched];
+    [
+        (size - (most - least)).abs(),
+        stated * size,
+        parts * truth.extreme_error,
+    ]
+}
