@@ -7,13 +7,22 @@
 //! ```
 //!
 //! at most, with the errors `E` of the compliance and the harmonics `f_ck` of the forces that were computed; for a rate `E` is multiplied by
-//! the frequency of its harmonic, for an acceleration by the square. That forces change as well is left out: the estimate is of first order,
-//! and says too little where the stiffness of a contact is as large as one over the error of the compliance.
+//! the frequency of its harmonic, for an acceleration by the square. Gaps differ as much, and change the forces, to which the reduced
+//! structure answers with all of its compliance: that is added ([`crate::feedback`]). At a fold it is what lies beside the branch.
+//! Both are of first order, and say too little where the stiffness of a contact is as large as one over the error of the compliance.
 
+use std::f64::consts::TAU;
+
+use hertzian::law::{Derivatives, On};
+use hertzian::structure::Value;
 use hertzian::{Branch, Error, Point};
 
-use crate::description::{LoadKind, SparseStructure};
+use crate::description::{Damping, LoadKind, SparseContact, SparseStructure};
+use crate::feedback::{Feedback, Read, Slopes, TIMES};
 use crate::reduced::Reduced;
+
+/// A multiplier so near to one is that of a fold.
+const TURNS: f64 = 1e-4;
 
 /// What the reduction changes of an output at an orbit.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,9 +76,35 @@ impl Reduced {
             forces.push((2 * structure.contacts.len() + index, amplitudes));
         }
         let first = 2 * structure.contacts.len() + structure.loads.len();
-        let outputs = structure.outputs.iter().enumerate();
-        let errors = outputs.map(|(index, output)| {
-            let amplitude = self.response_error(first + index, output.kind, base, &forces);
+        let measured = self.measured(structure, base);
+        let spread = self.spread_of(structure);
+        let completed = branch.complete(point)?;
+        let slopes = structure.contacts.iter().enumerate();
+        let slopes = slopes.map(|(index, contact)| self.slopes(index, contact, &completed, &known));
+        let speeds = structure.gyroscopic.iter();
+        let speeds: Vec<f64> = speeds.map(|g| g.speed.at(known, point.omega())).collect();
+        let mut multipliers = point.stability.multipliers.iter();
+        let at_fold = multipliers.any(|multiplier| (multiplier - 1.0).norm() < TURNS);
+        let feedback = Feedback::of(self, &speeds, base, slopes.collect(), at_fold);
+        let contacts = 0..structure.contacts.len();
+        let off: Vec<Vec<f64>> = contacts
+            .map(|contact| measured.harmonics_off(2 * contact, base, &forces, spread))
+            .collect();
+        let read = structure.outputs.iter().enumerate();
+        let read = read.map(|(index, output)| Read {
+            row: first + index,
+            derivatives: output.kind.derivatives(),
+        });
+        let changes = feedback.changes(&read.collect::<Vec<_>>(), &off);
+        let outputs = structure.outputs.iter().zip(changes).enumerate();
+        let errors = outputs.map(|(index, (output, change))| {
+            let row = first + index;
+            let alone = measured.response_off(row, output.kind, base, &forces, spread);
+            let amplitude = if change.is_nan() {
+                f64::INFINITY
+            } else {
+                alone + change
+            };
             let motion = branch.reading(&output.name, point)?.motion;
             let size = motion.peak_to_peak();
             Ok(OutputError {
@@ -82,5 +117,49 @@ impl Reduced {
             })
         });
         errors.collect()
+    }
+
+    /// By which part the ratios of modes that are left out differ at most, where the structure has its damping by modes.
+    fn spread_of(&self, structure: &SparseStructure) -> f64 {
+        let Damping::Modal(ratios) = &structure.damping else {
+            return 0.0;
+        };
+        let beyond = self.squares.get(self.modes).copied().unwrap_or(0.0);
+        ratios.spread(self.modes, beyond.max(0.0).sqrt())
+    }
+
+    /// Slopes of the law of a contact along an orbit that has its series.
+    fn slopes(
+        &self,
+        index: usize,
+        contact: &SparseContact,
+        point: &Point,
+        known: &impl Fn(&str) -> Option<f64>,
+    ) -> Slopes {
+        let of = |value: &Value| value.at(known, point.omega());
+        let row = &self.rows[2 * index];
+        let orbit = &point.orbit;
+        let (mut gaps, mut rates) = ([-of(&contact.offset); TIMES], [0.0; TIMES]);
+        for (coordinate, factor) in row.iter().enumerate() {
+            for time in 0..TIMES {
+                let after = TAU / orbit.base * time as f64 / TIMES as f64;
+                let (x, rate) = orbit.state_at(coordinate, after).unwrap_or_default();
+                gaps[time] += factor * x;
+                rates[time] += factor * rate;
+            }
+        }
+        let arguments: Vec<f64> = contact.arguments.iter().map(of).collect();
+        let mut slopes = Slopes {
+            by_gap: vec![0.0; TIMES],
+            by_rate: vec![0.0; TIMES],
+        };
+        let out = Derivatives {
+            force: &mut [0.0; TIMES],
+            by_gap: &mut slopes.by_gap,
+            by_rate: &mut slopes.by_rate,
+        };
+        let on = On::AllPieces;
+        contact.law.derivatives(on, &arguments, &gaps, &rates, out);
+        slopes
     }
 }

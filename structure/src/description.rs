@@ -68,6 +68,32 @@ impl Ratios {
         }
     }
 
+    /// By which part those from a mode or a frequency on differ at most.
+    pub(crate) fn spread(&self, mode: usize, frequency: f64) -> f64 {
+        let beyond: Vec<f64> = match self {
+            Self::One(_) => Vec::new(),
+            Self::PerMode(ratios) => {
+                let beyond = ratios.iter().skip(mode).chain(ratios.last());
+                beyond.copied().collect()
+            }
+            Self::Table(table) => {
+                let beyond = table.iter().filter(|[at, _]| *at > frequency);
+                let here = between(table, frequency);
+                beyond.map(|[_, ratio]| *ratio).chain([here]).collect()
+            }
+        };
+        let [least, most] = beyond
+            .iter()
+            .fold([f64::INFINITY, 0.0], |[least, most], x| {
+                [x.min(least), x.max(most)]
+            });
+        if most > 0.0 {
+            (most - least) / most
+        } else {
+            0.0
+        }
+    }
+
     fn numbers(&self) -> Vec<f64> {
         match self {
             Self::One(ratio) => vec![*ratio],

@@ -46,6 +46,7 @@ mod accuracy;
 mod description;
 mod error;
 mod factor;
+mod feedback;
 mod lanczos;
 mod matrix;
 mod reduced;

@@ -3,11 +3,12 @@
 use std::io;
 use std::path::Path;
 
-use hertzian::Error;
 use hertzian::structure::{Contact, DMatrix, Structure, Value};
+use hertzian::{Complex, Error};
 use serde::{Deserialize, Serialize};
 
 use crate::description::{LoadKind, OutputKind, SparseStructure};
+use crate::feedback::TIMES;
 
 /// The last harmonics of a force that say how large those beyond are, and how many of these there are at most.
 const LAST: usize = 4;
@@ -208,6 +209,35 @@ impl Reduced {
         }
     }
 
+    /// What the damping of vectors that are no modes makes of the compliance between two directions. How much they have is not known where modes
+    /// have ratios of their own.
+    fn by_damping(&self, read: usize, driven: usize, frequency: f64) -> f64 {
+        let m = self.vectors();
+        let of = |i: usize| {
+            let stiffness = self.squares[i] - frequency * frequency;
+            let damped = Complex::new(stiffness, frequency * self.damping[i * m + i]);
+            let push = self.rows[read][i] * self.rows[driven][i];
+            push / damped - push / Complex::new(stiffness, 0.0)
+        };
+        let sum: Complex<f64> = (self.modes..m).map(of).sum();
+        if sum.norm().is_finite() {
+            sum.norm()
+        } else {
+            0.0
+        }
+    }
+
+    /// Error of the compliance, and what it adds that ratios of damping differ.
+    fn compliance_off(&self, places: [usize; 2], frequency: f64, spread: f64) -> f64 {
+        let [read, driven] = places;
+        let damped = if spread > 0.0 {
+            spread * self.by_damping(read, driven, frequency)
+        } else {
+            0.0
+        };
+        damped + self.compliance_error(read, driven, frequency)
+    }
+
     /// The error that the reduction makes of the harmonics of what is read along a direction, to first order: the error of the compliance
     /// times the forces of contacts and loads, whose amplitudes by harmonic are given for each driven direction, and times the frequency
     /// for each derivative. Beyond the harmonics that are given, those of a force with more than three are taken to fall with the square of
@@ -219,29 +249,54 @@ impl Reduced {
         omega: f64,
         forces: &[(usize, Vec<f64>)],
     ) -> f64 {
+        self.response_off(read, kind, omega, forces, 0.0)
+    }
+
+    /// The same, where ratios of damping of what is left out differ by a part.
+    pub(crate) fn response_off(
+        &self,
+        read: usize,
+        kind: OutputKind,
+        omega: f64,
+        forces: &[(usize, Vec<f64>)],
+        spread: f64,
+    ) -> f64 {
         let looked_at = self.checked.last().map_or(0.0, |c| c.frequency);
         let derivatives = kind.derivatives();
         let of = |(driven, amplitudes): &(usize, Vec<f64>)| -> f64 {
             let error = |harmonic: usize| {
                 let frequency = harmonic as f64 * omega;
-                let compliance = self.compliance_error(read, *driven, frequency);
+                let compliance = self.compliance_off([read, *driven], frequency, spread);
                 compliance * frequency.min(looked_at).powi(derivatives)
             };
-            let terms = amplitudes.iter().enumerate();
-            let terms = terms.map(|(harmonic, amplitude)| error(harmonic) * amplitude.abs());
-            // A force whose slope jumps where a contact opens falls with the square of the harmonic.
             let known = amplitudes.len();
-            let last = amplitudes[known - known.min(LAST)..].iter();
-            let last = last.fold(0.0, |m: f64, x| m.max(x.abs()));
             let end = match kind {
                 OutputKind::Displacement => ((looked_at / omega) as usize).max(4 * known).min(MOST),
                 OutputKind::Rate | OutputKind::Acceleration => MOST,
             };
-            let tail = (known..=end).filter(|_| known > 2);
-            let tail = tail.map(|k| error(k) * last * (known as f64 / k as f64).powi(2));
-            terms.sum::<f64>() + tail.sum::<f64>()
+            let terms = (0..=end).map(|k| error(k) * amplitude_of(amplitudes, k));
+            terms.sum::<f64>()
         };
         forces.iter().map(of).sum()
+    }
+
+    /// The same of a displacement, harmonic by harmonic, which are as many as [`TIMES`] tell.
+    pub(crate) fn harmonics_off(
+        &self,
+        read: usize,
+        omega: f64,
+        forces: &[(usize, Vec<f64>)],
+        spread: f64,
+    ) -> Vec<f64> {
+        let at = |harmonic: usize| {
+            let frequency = harmonic as f64 * omega;
+            let of = |(driven, amplitudes): &(usize, Vec<f64>)| {
+                let compliance = self.compliance_off([read, *driven], frequency, spread);
+                compliance * amplitude_of(amplitudes, harmonic)
+            };
+            forces.iter().map(of).sum()
+        };
+        (0..TIMES / 2).map(at).collect()
     }
 
     /// The structure by these vectors, with the loads, contacts and outputs of the whole one.
@@ -421,6 +476,21 @@ impl Reduced {
         }
         hash
     }
+}
+
+/// The amplitude of a harmonic of a force. Beyond those that are known a force with more than three, whose slope jumps where a contact opens,
+/// falls with the square of the harmonic.
+fn amplitude_of(amplitudes: &[f64], harmonic: usize) -> f64 {
+    let known = amplitudes.len();
+    if let Some(amplitude) = amplitudes.get(harmonic) {
+        return amplitude.abs();
+    }
+    if known < 3 {
+        return 0.0;
+    }
+    let last = amplitudes[known - known.min(LAST)..].iter();
+    let last = last.fold(0.0, |m: f64, x| m.max(x.abs()));
+    last * (known as f64 / harmonic as f64).powi(2)
 }
 
 /// Whether a matrix of so many rows, row by row, is its transpose times a sign.

@@ -33,7 +33,7 @@ pub use error::ReductionError;
 use crate::description::{Damping, SparseStructure};
 use crate::factor;
 use crate::lanczos::Basis;
-use crate::reduced::{Asked, Reduced, ReducedError};
+use crate::reduced::{Asked, Checked, Reduced, ReducedError};
 use work::Work;
 
 /// Steps (1) at most.
@@ -42,6 +42,10 @@ const MOST_STEPS: usize = 6;
 /// ones.
 const MULTIPLES: [f64; 8] = [0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 const ASKED: usize = 6;
+/// Of structures with more coordinates (2) is not measured at the harmonics of each orbit.
+const SMALL: usize = 2000;
+/// Harmonics of an orbit at which it is.
+const HARMONICS: usize = 32;
 
 /// How a structure is reduced.
 #[derive(Debug, Clone)]
@@ -167,5 +171,31 @@ impl Reduction {
             }),
             _ => Ok(()),
         }
+    }
+}
+
+impl Reduced {
+    /// The same with (2) measured at harmonics of a base frequency too: between modes that are not among the vectors it changes by orders of
+    /// magnitude. Of a large structure it stays interpolated.
+    pub(crate) fn measured(&self, structure: &SparseStructure, base: f64) -> Self {
+        let mut measured = self.clone();
+        if self.coordinates > SMALL || self.vectors() == self.coordinates {
+            return measured;
+        }
+        let options = Reduction {
+            to: self.to(),
+            asked: self.asked,
+            cancel: Cancel::new(),
+        };
+        let Ok(work) = Work::new(&options, structure) else {
+            return measured;
+        };
+        let harmonics = (1..=HARMONICS).map(|k| k as f64 * base / self.to());
+        let checked = harmonics.filter_map(|multiple| work.checked(self, multiple).ok());
+        measured.checked.extend(checked);
+        let of = |c: &Checked| c.frequency;
+        measured.checked.sort_by(|a, b| of(a).total_cmp(&of(b)));
+        measured.checked.dedup_by(|a, b| of(a) == of(b));
+        measured
     }
 }
