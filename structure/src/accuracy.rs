@@ -17,7 +17,8 @@ use hertzian::law::{Derivatives, On};
 use hertzian::structure::Value;
 use hertzian::{Branch, Error, Point};
 
-use crate::description::{Damping, LoadKind, SparseContact, SparseStructure};
+use crate::description::{LoadKind, SparseContact, SparseStructure};
+use crate::doubt::Doubt;
 use crate::feedback::{Feedback, Read, Slopes, TIMES};
 use crate::reduced::Reduced;
 
@@ -34,6 +35,47 @@ pub struct OutputError {
     pub error: f64,
 }
 
+/// Values of parameters at an orbit.
+fn known<'p>(branch: &'p Branch, point: &'p Point) -> impl Fn(&str) -> Option<f64> + Copy + 'p {
+    move |name: &str| {
+        let mut parameters = branch.model.parameters.iter().zip(&point.parameters);
+        let found = parameters.find(|(of, _)| of.name == name);
+        found.map(|(_, value)| *value)
+    }
+}
+
+/// Places of contacts and loads among what is driven with the amplitudes of their harmonics, and the base frequency of these.
+type Forces = (Vec<(usize, Vec<f64>)>, f64);
+
+/// Forces of contacts and loads at an orbit.
+fn forces(structure: &SparseStructure, branch: &Branch, point: &Point) -> Result<Forces, Error> {
+    let mut forces: Vec<(usize, Vec<f64>)> = Vec::new();
+    let mut base = point.omega();
+    for (index, contact) in structure.contacts.iter().enumerate() {
+        let reading = branch.reading(&contact.name, point)?;
+        base = reading.base;
+        let lines = reading.spectrum();
+        let amplitudes = lines.iter().map(|line| line.amplitude).collect();
+        forces.push((2 * index + 1, amplitudes));
+    }
+    let per_load = (point.omega() / base).round().max(1.0) as usize;
+    for (index, load) in structure.loads.iter().enumerate() {
+        let amplitude = load.amplitude.at(known(branch, point), point.omega());
+        let frequency = f64::from(load.harmonic) * point.omega();
+        let factor = match load.kind {
+            LoadKind::Force | LoadKind::Acceleration => 1.0,
+            LoadKind::Unbalance => point.omega().powi(2),
+            LoadKind::Base => frequency * frequency,
+        };
+        let mut amplitudes = vec![0.0; load.harmonic as usize * per_load + 1];
+        if let Some(last) = amplitudes.last_mut() {
+            *last = (amplitude * factor).abs();
+        }
+        forces.push((2 * structure.contacts.len() + index, amplitudes));
+    }
+    Ok((forces, base))
+}
+
 impl Reduced {
     /// What the reduction changes of each output of a structure at an orbit of a branch of it.
     ///
@@ -45,87 +87,38 @@ impl Reduced {
         branch: &Branch,
         point: &Point,
     ) -> Result<Vec<OutputError>, Error> {
-        let mut forces: Vec<(usize, Vec<f64>)> = Vec::new();
-        let mut base = point.omega();
-        for (index, contact) in structure.contacts.iter().enumerate() {
-            let reading = branch.reading(&contact.name, point)?;
-            base = reading.base;
-            let lines = reading.spectrum();
-            let amplitudes = lines.iter().map(|line| line.amplitude).collect();
-            forces.push((2 * index + 1, amplitudes));
-        }
-        let known = |name: &str| {
-            let mut parameters = branch.model.parameters.iter().zip(&point.parameters);
-            parameters
-                .find(|(of, _)| of.name == name)
-                .map(|(_, value)| *value)
-        };
-        let per_load = (point.omega() / base).round().max(1.0) as usize;
-        for (index, load) in structure.loads.iter().enumerate() {
-            let amplitude = load.amplitude.at(known, point.omega());
-            let frequency = f64::from(load.harmonic) * point.omega();
-            let factor = match load.kind {
-                LoadKind::Force | LoadKind::Acceleration => 1.0,
-                LoadKind::Unbalance => point.omega().powi(2),
-                LoadKind::Base => frequency * frequency,
-            };
-            let mut amplitudes = vec![0.0; load.harmonic as usize * per_load + 1];
-            if let Some(last) = amplitudes.last_mut() {
-                *last = (amplitude * factor).abs();
-            }
-            forces.push((2 * structure.contacts.len() + index, amplitudes));
-        }
+        let (forces, base) = forces(structure, branch, point)?;
         let first = 2 * structure.contacts.len() + structure.loads.len();
         let measured = self.measured(structure, base);
-        let spread = self.spread_of(structure);
+        let speeds = structure.gyroscopic.iter();
+        let speeds = speeds.map(|g| g.speed.at(known(branch, point), point.omega()));
+        let speeds: Vec<f64> = speeds.collect();
+        let doubt = Doubt::of_orbit(self, structure, &speeds, base);
         let completed = branch.complete(point)?;
         let slopes = structure.contacts.iter().enumerate();
-        let slopes = slopes.map(|(index, contact)| self.slopes(index, contact, &completed, &known));
-        let speeds = structure.gyroscopic.iter();
-        let speeds: Vec<f64> = speeds.map(|g| g.speed.at(known, point.omega())).collect();
-        let mut multipliers = point.stability.multipliers.iter();
-        let at_fold = multipliers.any(|multiplier| (multiplier - 1.0).norm() < TURNS);
-        let feedback = Feedback::of(self, &speeds, base, slopes.collect(), at_fold);
+        let slopes = slopes
+            .map(|(index, contact)| self.slopes(index, contact, &completed, &known(branch, point)));
+        let feedback = Feedback::of(self, &speeds, base, slopes.collect(), turns(point));
         let contacts = 0..structure.contacts.len();
-        let off: Vec<Vec<f64>> = contacts
-            .map(|contact| measured.harmonics_off(2 * contact, base, &forces, spread))
-            .collect();
+        let off =
+            contacts.map(|contact| measured.harmonics_off(2 * contact, base, &forces, &doubt));
         let read = structure.outputs.iter().enumerate();
         let read = read.map(|(index, output)| Read {
             row: first + index,
             derivatives: output.kind.derivatives(),
         });
-        let changes = feedback.changes(&read.collect::<Vec<_>>(), &off);
-        let outputs = structure.outputs.iter().zip(changes).enumerate();
-        let errors = outputs.map(|(index, (output, change))| {
-            let row = first + index;
-            let alone = measured.response_off(row, output.kind, base, &forces, spread);
-            let amplitude = if change.is_nan() {
-                f64::INFINITY
-            } else {
-                alone + change
-            };
+        let read: Vec<_> = read.collect();
+        let changes = feedback.changes(&read, &off.collect::<Vec<_>>());
+        let outputs = structure.outputs.iter().zip(&read).zip(changes);
+        let errors = outputs.map(|((output, read), change)| {
+            let alone = measured.response_off(read.row, output.kind, base, &forces, &doubt);
             let motion = branch.reading(&output.name, point)?.motion;
-            let size = motion.peak_to_peak();
             Ok(OutputError {
                 name: output.name.clone(),
-                error: if amplitude == 0.0 {
-                    0.0
-                } else {
-                    2.0 * amplitude / size
-                },
+                error: part(alone + change, motion.peak_to_peak()),
             })
         });
         errors.collect()
-    }
-
-    /// By which part the ratios of modes that are left out differ at most, where the structure has its damping by modes.
-    fn spread_of(&self, structure: &SparseStructure) -> f64 {
-        let Damping::Modal(ratios) = &structure.damping else {
-            return 0.0;
-        };
-        let beyond = self.squares.get(self.modes).copied().unwrap_or(0.0);
-        ratios.spread(self.modes, beyond.max(0.0).sqrt())
     }
 
     /// Slopes of the law of a contact along an orbit that has its series.
@@ -161,5 +154,22 @@ impl Reduced {
         let on = On::AllPieces;
         contact.law.derivatives(on, &arguments, &gaps, &rates, out);
         slopes
+    }
+}
+
+/// Whether a branch turns at an orbit.
+fn turns(point: &Point) -> bool {
+    let mut multipliers = point.stability.multipliers.iter();
+    multipliers.any(|multiplier| (multiplier - 1.0).norm() < TURNS)
+}
+
+/// What an amplitude is of a peak-to-peak; what is not a number is unbounded.
+fn part(amplitude: f64, size: f64) -> f64 {
+    if amplitude == 0.0 {
+        0.0
+    } else if amplitude.is_nan() {
+        f64::INFINITY
+    } else {
+        2.0 * amplitude / size
     }
 }

@@ -44,6 +44,7 @@ pub mod npy;
 
 mod accuracy;
 mod description;
+mod doubt;
 mod error;
 mod factor;
 mod feedback;

@@ -3,11 +3,12 @@
 use std::io;
 use std::path::Path;
 
+use hertzian::Error;
 use hertzian::structure::{Contact, DMatrix, Structure, Value};
-use hertzian::{Complex, Error};
 use serde::{Deserialize, Serialize};
 
 use crate::description::{LoadKind, OutputKind, SparseStructure};
+use crate::doubt::Doubt;
 use crate::feedback::TIMES;
 
 /// The last harmonics of a force that say how large those beyond are, and how many of these there are at most.
@@ -32,6 +33,8 @@ pub struct Reduced {
     pub(crate) squares: Vec<f64>,
     pub(crate) damping: Vec<f64>,
     pub(crate) gyroscopic: Vec<Vec<f64>>,
+    /// By pairs of damping matrix, where that was given by its entries, and gyroscopic ones: how what is left out couples vectors.
+    pub(crate) coupling: Vec<Vec<f64>>,
     /// Of each direction the components of the vectors along it.
     pub(crate) rows: Vec<Vec<f64>>,
     pub(crate) checked: Vec<Checked>,
@@ -129,7 +132,7 @@ pub enum ReducedError {
 }
 
 impl Reduced {
-    pub(crate) const VERSION: u32 = 3;
+    pub(crate) const VERSION: u32 = 4;
 
     /// How many of its vectors are modes of the structure.
     pub fn modes(&self) -> usize {
@@ -209,35 +212,6 @@ impl Reduced {
         }
     }
 
-    /// What the damping of vectors that are no modes makes of the compliance between two directions. How much they have is not known where modes
-    /// have ratios of their own.
-    fn by_damping(&self, read: usize, driven: usize, frequency: f64) -> f64 {
-        let m = self.vectors();
-        let of = |i: usize| {
-            let stiffness = self.squares[i] - frequency * frequency;
-            let damped = Complex::new(stiffness, frequency * self.damping[i * m + i]);
-            let push = self.rows[read][i] * self.rows[driven][i];
-            push / damped - push / Complex::new(stiffness, 0.0)
-        };
-        let sum: Complex<f64> = (self.modes..m).map(of).sum();
-        if sum.norm().is_finite() {
-            sum.norm()
-        } else {
-            0.0
-        }
-    }
-
-    /// Error of the compliance, and what it adds that ratios of damping differ.
-    fn compliance_off(&self, places: [usize; 2], frequency: f64, spread: f64) -> f64 {
-        let [read, driven] = places;
-        let damped = if spread > 0.0 {
-            spread * self.by_damping(read, driven, frequency)
-        } else {
-            0.0
-        };
-        damped + self.compliance_error(read, driven, frequency)
-    }
-
     /// The error that the reduction makes of the harmonics of what is read along a direction, to first order: the error of the compliance
     /// times the forces of contacts and loads, whose amplitudes by harmonic are given for each driven direction, and times the frequency
     /// for each derivative. Beyond the harmonics that are given, those of a force with more than three are taken to fall with the square of
@@ -249,24 +223,25 @@ impl Reduced {
         omega: f64,
         forces: &[(usize, Vec<f64>)],
     ) -> f64 {
-        self.response_off(read, kind, omega, forces, 0.0)
+        self.response_off(read, kind, omega, forces, &Doubt::default())
     }
 
-    /// The same, where ratios of damping of what is left out differ by a part.
+    /// The same with what is not known of damping.
     pub(crate) fn response_off(
         &self,
         read: usize,
         kind: OutputKind,
         omega: f64,
         forces: &[(usize, Vec<f64>)],
-        spread: f64,
+        doubt: &Doubt,
     ) -> f64 {
         let looked_at = self.checked.last().map_or(0.0, |c| c.frequency);
         let derivatives = kind.derivatives();
         let of = |(driven, amplitudes): &(usize, Vec<f64>)| -> f64 {
             let error = |harmonic: usize| {
                 let frequency = harmonic as f64 * omega;
-                let compliance = self.compliance_off([read, *driven], frequency, spread);
+                let compliance = self.compliance_error(read, *driven, frequency)
+                    + doubt.of(self, [read, *driven], harmonic, omega);
                 compliance * frequency.min(looked_at).powi(derivatives)
             };
             let known = amplitudes.len();
@@ -286,12 +261,13 @@ impl Reduced {
         read: usize,
         omega: f64,
         forces: &[(usize, Vec<f64>)],
-        spread: f64,
+        doubt: &Doubt,
     ) -> Vec<f64> {
         let at = |harmonic: usize| {
             let frequency = harmonic as f64 * omega;
             let of = |(driven, amplitudes): &(usize, Vec<f64>)| {
-                let compliance = self.compliance_off([read, *driven], frequency, spread);
+                let compliance = self.compliance_error(read, *driven, frequency)
+                    + doubt.of(self, [read, *driven], harmonic, omega);
                 compliance * amplitude_of(amplitudes, harmonic)
             };
             forces.iter().map(of).sum()
@@ -412,6 +388,7 @@ impl Reduced {
             && self.asked.tolerance > 0.0
             && mirrored(&self.damping, m, 1.0)
             && self.gyroscopic.iter().all(|g| mirrored(g, m, -1.0))
+            && self.coupling.iter().all(|c| c.len() == m * m)
             && rows
             && !self.checked.is_empty()
             && self.checked.iter().all(sound)

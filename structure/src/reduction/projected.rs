@@ -29,17 +29,7 @@ impl Work<'_> {
             }
         }
         let stiffness = 0.5 * (&stiffness + stiffness.transpose());
-        let (own, vectors) = diagonal(&stiffness, kept);
-        let mut order: Vec<usize> = (0..m - kept).collect();
-        order.sort_by(|&a, &b| own[a].total_cmp(&own[b]));
-        let mut turn = DMatrix::zeros(m, m);
-        turn.view_mut((0, 0), (kept, kept)).fill_with_identity();
-        let mut all = squares.to_vec();
-        for (place, &of) in order.iter().enumerate() {
-            all.push(own[of]);
-            turn.view_mut((kept, kept + place), (m - kept, 1))
-                .copy_from(&vectors.column(of));
-        }
+        let (turn, all) = turned(&stiffness, squares);
         // Symmetric, or skew-symmetric by a sign of -1, to the last bit, as the matrix itself is up to rounding.
         let project = |matrix: &SparseMatrix, sign: f64| {
             let images: Vec<Vec<f64>> = basis.vectors.iter().map(|v| matrix.times(v)).collect();
@@ -52,6 +42,9 @@ impl Work<'_> {
             (inner * &turn).iter().copied().collect()
         };
         let structure = self.structure;
+        // What was looked at is what is kept.
+        let is_kept = !checked.is_empty();
+        let coupling = is_kept.then(|| self.coupling(basis, &turn, &all));
         Reduced {
             version: Reduced::VERSION,
             fingerprint: Reduced::fingerprint_of(structure),
@@ -65,11 +58,79 @@ impl Work<'_> {
                 .iter()
                 .map(|g| entries(&project(&g.matrix, -1.0)))
                 .collect(),
+            coupling: coupling.unwrap_or_default(),
             squares: all,
             rows: self.directions.rows.iter().map(row).collect(),
             checked,
         }
     }
+}
+
+impl Work<'_> {
+    /// `(B_p V)^T R (B_q V)` of each pair of a damping matrix that is given by its entries and gyroscopic ones: what is left out answers the
+    /// vectors by its compliance `R`, that of a slow motion. None where there is no such matrix or nothing is left out.
+    fn coupling(&self, basis: &Basis<'_>, turn: &DMatrix<f64>, squares: &[f64]) -> Vec<Vec<f64>> {
+        let structure = self.structure;
+        let m = basis.vectors.len();
+        let given = match &structure.damping {
+            Damping::Matrix(matrix) => Some(matrix),
+            _ => None,
+        };
+        let turned = structure.gyroscopic.iter().map(|g| &g.matrix);
+        let matrices: Vec<&SparseMatrix> = given.into_iter().chain(turned).collect();
+        if matrices.is_empty() || m == structure.coordinates() {
+            return Vec::new();
+        }
+        // All of them beside each other, and what the structure answers to them.
+        let images = matrices
+            .iter()
+            .flat_map(|matrix| basis.vectors.iter().map(|v| matrix.times(v)));
+        let images: Vec<Vec<f64>> = images.collect();
+        let answers: Vec<Vec<f64>> = images
+            .iter()
+            .map(|image| self.factor.solve(image))
+            .collect();
+        let known = |image: &Vec<f64>| -> Vec<f64> {
+            let parts = basis.vectors.iter().map(|v| lanczos::dot(v, image));
+            (DMatrix::from_iterator(1, m, parts) * turn)
+                .iter()
+                .copied()
+                .collect()
+        };
+        let along: Vec<Vec<f64>> = images.iter().map(known).collect();
+        let entry = |i: usize, j: usize| {
+            let terms = along[i].iter().zip(&along[j]).zip(squares);
+            let of_vectors: f64 = terms
+                .map(|((a, b), square)| a * b / (square + self.shift))
+                .sum();
+            lanczos::dot(&images[i], &answers[j]) - of_vectors
+        };
+        let count = matrices.len();
+        let pairs = (0..count).flat_map(|p| (0..count).map(move |q| (p, q)));
+        pairs
+            .map(|(p, q)| {
+                let block = DMatrix::from_fn(m, m, |i, j| entry(p * m + i, q * m + j));
+                entries(&(turn.transpose() * block * turn))
+            })
+            .collect()
+    }
+}
+
+/// The turn of vectors that makes the stiffness of those behind the modes diagonal, and squares of frequencies of all.
+fn turned(stiffness: &DMatrix<f64>, squares: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
+    let (kept, m) = (squares.len(), stiffness.nrows());
+    let (own, vectors) = diagonal(stiffness, kept);
+    let mut order: Vec<usize> = (0..m - kept).collect();
+    order.sort_by(|&a, &b| own[a].total_cmp(&own[b]));
+    let mut turn = DMatrix::zeros(m, m);
+    turn.view_mut((0, 0), (kept, kept)).fill_with_identity();
+    let mut all = squares.to_vec();
+    for (place, &of) in order.iter().enumerate() {
+        all.push(own[of]);
+        turn.view_mut((kept, kept + place), (m - kept, 1))
+            .copy_from(&vectors.column(of));
+    }
+    (turn, all)
 }
 
 /// Eigenvalues and eigenvectors of what stands behind the modes.

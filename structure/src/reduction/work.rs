@@ -28,8 +28,8 @@ pub(super) struct Work<'r> {
     pub(super) options: &'r Reduction,
     pub(super) structure: &'r SparseStructure,
     order: Ordering,
-    factor: Factor,
-    shift: f64,
+    pub(super) factor: Factor,
+    pub(super) shift: f64,
     pub(super) directions: Directions,
 }
 

@@ -7,14 +7,13 @@ use std::fmt::Write as _;
 use hertzian::Complex;
 use hertzian::structure::Value;
 use hertzian_structure::{
-    Damping, Direction, Gyroscopic, Load, LoadKind, Ratios, SparseContact, SparseMatrix,
-    SparseStructure,
+    Damping, Gyroscopic, Load, LoadKind, Ratios, SparseContact, SparseStructure,
 };
 use hertzian_tests::random::Random;
 use nalgebra::{DMatrix, DVector};
 
 use super::laws::Law;
-use crate::common::{beam_of, dense};
+use super::matrices::{along, bonds, matrices, modes_of, ratio, sparse};
 
 /// Numbers of coordinates, few of them more often.
 const SIZES: [[usize; 2]; 10] = [
@@ -89,7 +88,9 @@ pub fn structure(index: u64) -> Drawn {
     let rigid = elastic(&squares).unwrap_or(0);
     let stiffness = stiffness / squares[rigid];
     let (squares, modes) = modes_of(&mass, &stiffness);
-    let frequencies: Vec<f64> = squares.iter().map(|s| s.max(0.0).sqrt()).collect();
+    // Rigid modes have none, which rounding would leave something of.
+    let frequency = |(mode, square): (usize, &f64)| if mode < rigid { 0.0 } else { square.sqrt() };
+    let frequencies: Vec<f64> = squares.iter().enumerate().map(frequency).collect();
     let n = mass.nrows();
     let mut drawn = Drawn {
         mass,
@@ -113,86 +114,6 @@ pub fn structure(index: u64) -> Drawn {
     drawn.load();
     drawn.touch();
     drawn
-}
-
-/// Entries of a matrix that is made of elements between two places.
-fn bonds(n: usize, bonds: &[(usize, usize, f64)], [own, beside]: [f64; 2]) -> DMatrix<f64> {
-    let mut matrix = DMatrix::zeros(n, n);
-    for &(a, b, factor) in bonds {
-        for (i, j, x) in [(a, a, own), (b, b, own), (a, b, beside), (b, a, beside)] {
-            matrix[(i, j)] += factor * x;
-        }
-    }
-    matrix
-}
-
-/// Mass and stiffness.
-fn matrices(random: &mut Random, n: usize, free: bool) -> [DMatrix<f64>; 2] {
-    if n % 2 == 0 && n <= 8 && random.once_in(3) {
-        let elements = if free { n / 2 - 1 } else { n / 2 };
-        let beam = beam_of(elements, free);
-        return [beam.mass(), beam.stiffness()].map(dense);
-    }
-    let mut springs: Vec<_> = (1..n)
-        .map(|i| (i - 1, i, random.between(0.4, 2.0)))
-        .collect();
-    let mass = if random.once_in(3) {
-        // Bars with linear displacements.
-        let bars: Vec<_> = (springs.iter())
-            .map(|&(a, b, _)| (a, b, random.between(0.6, 1.6)))
-            .collect();
-        bonds(n, &bars, [1.0 / 3.0, 1.0 / 6.0])
-    } else {
-        let all_alike = random.once_in(3);
-        let masses = (0..n).map(|_| {
-            if all_alike {
-                1.0
-            } else {
-                random.between(0.5, 2.5)
-            }
-        });
-        DMatrix::from_diagonal(&DVector::from_iterator(n, masses))
-    };
-    if n > 3 && random.once_in(2) {
-        for _ in 0..n.div_ceil(3) {
-            let (a, b) = (random.below(n), random.below(n));
-            if a != b {
-                springs.push((a, b, random.between(0.1, 1.0)));
-            }
-        }
-    }
-    let mut stiffness = bonds(n, &springs, [1.0, -1.0]);
-    if !free {
-        stiffness[(0, 0)] += random.between(0.5, 2.0);
-        for _ in 0..random.below(3) {
-            let at = random.below(n);
-            stiffness[(at, at)] += random.between(0.1, 1.0);
-        }
-    }
-    [mass, stiffness]
-}
-
-/// Squares of frequencies in ascending order, and modes of unit mass.
-pub fn modes_of(mass: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> (Vec<f64>, DMatrix<f64>) {
-    let lower = mass.clone().cholesky().expect("a positive mass").l();
-    let half = lower.solve_lower_triangular(stiffness).expect("regular");
-    let whole = lower
-        .solve_lower_triangular(&half.transpose())
-        .expect("regular");
-    let eigen = (0.5 * (&whole + whole.transpose())).symmetric_eigen();
-    let mut order: Vec<usize> = (0..mass.nrows()).collect();
-    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-    let sorted = DMatrix::from_columns(
-        &order
-            .iter()
-            .map(|&i| eigen.eigenvectors.column(i))
-            .collect::<Vec<_>>(),
-    );
-    let modes = lower
-        .transpose()
-        .solve_upper_triangular(&sorted)
-        .expect("regular");
-    (order.iter().map(|&i| eigen.eigenvalues[i]).collect(), modes)
 }
 
 impl Drawn {
@@ -454,36 +375,8 @@ impl Drawn {
         };
         let moves = self.without_contact(&gap).max(1e-3);
         let stiffness = self.random.magnitude(0.3, 30.0) / self.compliance(&gap);
+        let law = self.law(holds, stiffness, moves);
         let random = &mut self.random;
-        // A power has the force of such a spring at a third of the motion.
-        let at = 0.3 * moves;
-        let kind = if holds { 3 } else { random.below(8) };
-        let law = match kind {
-            0 | 1 => Law::Stop { k: stiffness },
-            2 => Law::Power {
-                k: stiffness * at.powf(-0.5),
-                alpha: 1.5,
-            },
-            3 => Law::Play {
-                k: stiffness,
-                half: moves * random.between(0.1, 0.6),
-            },
-            4 => Law::Damped {
-                k: stiffness,
-                c: stiffness * random.magnitude(0.003, 0.1) / self.range[0],
-            },
-            5 => Law::Lossy {
-                k: stiffness * at.powf(-0.5),
-                c: random.between(0.05, 0.5) / moves,
-            },
-            _ => {
-                let alpha = random.between(0.7, 3.0);
-                Law::Power {
-                    k: stiffness * at.powf(1.0 - alpha),
-                    alpha,
-                }
-            }
-        };
         let offset = match (law, random.below(5)) {
             (Law::Play { .. }, 0..3) => 0.0,
             (Law::Play { .. }, _) => moves * random.between(-0.3, 0.3),
@@ -502,6 +395,40 @@ impl Drawn {
             force,
             offset,
         });
+    }
+
+    /// The law of a contact where a spring would have this stiffness and the structure moves so much without it.
+    fn law(&mut self, holds: bool, stiffness: f64, moves: f64) -> Law {
+        let from = self.range[0];
+        let random = &mut self.random;
+        // A power has the force of such a spring at a third of the motion.
+        let at = 0.3 * moves;
+        match if holds { 3 } else { random.below(8) } {
+            0 | 1 => Law::Stop { k: stiffness },
+            2 => Law::Power {
+                k: stiffness * at.powf(-0.5),
+                alpha: 1.5,
+            },
+            3 => Law::Play {
+                k: stiffness,
+                half: moves * random.between(0.1, 0.6),
+            },
+            4 => Law::Damped {
+                k: stiffness,
+                c: stiffness * random.magnitude(0.003, 0.1) / from,
+            },
+            5 => Law::Lossy {
+                k: stiffness * at.powf(-0.5),
+                c: random.between(0.05, 0.5) / moves,
+            },
+            _ => {
+                let alpha = random.between(0.7, 3.0);
+                Law::Power {
+                    k: stiffness * at.powf(1.0 - alpha),
+                    alpha,
+                }
+            }
+        }
     }
 
     /// As the library takes it. The first output is the tip; others follow.
@@ -579,33 +506,4 @@ impl Drawn {
         }
         text
     }
-}
-
-fn ratio(ratios: &Ratios, mode: usize, frequency: f64) -> f64 {
-    match ratios {
-        Ratios::One(ratio) => *ratio,
-        Ratios::PerMode(all) => all[mode.min(all.len() - 1)],
-        Ratios::Table(table) => {
-            let last = table.len() - 1;
-            if frequency <= table[0][0] {
-                return table[0][1];
-            }
-            let between = (0..last).find(|&i| frequency <= table[i + 1][0]);
-            between.map_or(table[last][1], |i| {
-                let ([a, low], [b, high]) = (table[i], table[i + 1]);
-                low + (high - low) * (frequency - a) / (b - a)
-            })
-        }
-    }
-}
-
-fn along(direction: &DVector<f64>) -> Direction {
-    let entries = direction.iter().copied().enumerate();
-    Direction::weighted(entries.filter(|(_, x)| *x != 0.0))
-}
-
-fn sparse(matrix: &DMatrix<f64>) -> SparseMatrix {
-    let (n, m) = matrix.shape();
-    let entries = (0..n).flat_map(|i| (0..m).map(move |j| (i, j, matrix[(i, j)])));
-    SparseMatrix::from_triplets(n, m, entries.filter(|(_, _, x)| *x != 0.0)).expect("finite")
 }

@@ -11,8 +11,8 @@ use hertzian::{
     Branch, ContactEquation, Error, FrequencyResponse, OrbitMethod, Point, Shooting, Stability,
     System, Verdict,
 };
-use hertzian_structure::{Direction, Reduced, Reduction, SparseStructure};
-use hertzian_tests::passage::{Passage, matched};
+use hertzian_structure::{Direction, Reduction, SparseStructure};
+use hertzian_tests::passage::{Passage, Walked, as_far, matched};
 use hertzian_tests::random::Random;
 use nalgebra::{DMatrix, DVector};
 
@@ -21,10 +21,10 @@ use super::laws::Law;
 use super::report::{Kind, Report};
 use super::truth::{Question, Truth, Unsure};
 
-/// Points of a branch at most.
-const POINTS: usize = 60;
+/// Points of a branch at most: of a small structure, and of others.
+const POINTS: [usize; 2] = [400, 60];
 /// Orbits of a branch that are looked at: of the whole structure, and of a reduced one.
-const ORBITS: [usize; 2] = [3, 2];
+pub const ORBITS: [usize; 2] = [3, 2];
 /// Time of the processor that a branch may take. What is begun is ended, so that some take longer.
 const BUDGET: Duration = Duration::from_secs(2);
 /// How far from the true orbit a state may be, relative to the size.
@@ -34,16 +34,16 @@ const SMALL: usize = 6;
 
 /// One structure at work.
 pub struct Case {
-    index: u64,
-    drawn: Drawn,
-    sparse: SparseStructure,
-    random: Random,
-    report: Report,
+    pub index: u64,
+    pub drawn: Drawn,
+    pub sparse: SparseStructure,
+    pub random: Random,
+    pub report: Report,
 }
 
 /// What was asked of errors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Asked {
+pub enum Asked {
     /// Of all coordinates, which are amplitudes of modes.
     Modes,
     /// Of the first output.
@@ -84,12 +84,12 @@ fn now() -> Duration {
 }
 
 /// The structure with all modes.
-struct Whole {
-    model: Structure,
+pub struct Whole {
+    pub model: Structure,
     /// Coordinates by amplitudes of modes.
-    modes: DMatrix<f64>,
+    pub modes: DMatrix<f64>,
     /// What is watched of true orbits: amplitudes of modes, and the tip.
-    watched: DMatrix<f64>,
+    pub watched: DMatrix<f64>,
 }
 
 impl Case {
@@ -124,11 +124,11 @@ impl Case {
         self.report
     }
 
-    fn find(&mut self, kind: Kind, text: String) {
+    pub fn find(&mut self, kind: Kind, text: String) {
         self.report.find(kind, self.index, text);
     }
 
-    fn highest(&self) -> f64 {
+    pub fn highest(&self) -> f64 {
         self.drawn.range[0].max(self.drawn.range[1])
     }
 
@@ -187,7 +187,7 @@ impl Case {
     }
 
     /// The branch over the range.
-    fn branch(&mut self, model: &Structure, asked: Asked) -> Option<Branch> {
+    pub fn branch(&mut self, model: &Structure, asked: Asked) -> Option<Branch> {
         let jumps = |law: &Law| matches!(law, Law::Damped { .. });
         let mut laws = self.drawn.contacts.iter().map(|contact| contact.law);
         let closed = laws.clone().all(|law| law.is_affine()) || laws.any(|law| jumps(&law));
@@ -227,18 +227,8 @@ impl Case {
         let found = request
             .from(from)
             .to(to)
-            .max_points(POINTS)
+            .max_points(POINTS[usize::from(self.drawn.size() > SMALL)])
             .run_with(|_| clock.flow());
-        eprintln!(
-            "T {} n {} branch {:.2} {:?} of {}",
-            self.index,
-            self.drawn.size(),
-            (now() - clock.begun).as_secs_f64(),
-            found
-                .as_ref()
-                .map(|b| (b.method(), b.points.len(), b.stopped.to_string())),
-            clock.out.get()
-        );
         if clock.out.get() {
             self.report.count("branches that ran out of time");
         }
@@ -259,7 +249,7 @@ impl Case {
     }
 
     /// Some points: anywhere, and an unstable one.
-    fn chosen(&mut self, branch: &Branch, count: usize) -> Vec<usize> {
+    pub fn chosen(&mut self, branch: &Branch, count: usize) -> Vec<usize> {
         let points = &branch.points;
         let unstable = |index: &usize| points[*index].stability.verdict == Verdict::Unstable;
         let unstable: Vec<usize> = (0..points.len()).filter(unstable).collect();
@@ -277,7 +267,7 @@ impl Case {
     }
 
     /// The true orbit near one of the structure with all modes.
-    fn truth(&mut self, whole: &Whole, point: &Point) -> Option<Truth> {
+    pub fn truth(&mut self, whole: &Whole, point: &Point) -> Option<Truth> {
         let n = self.drawn.size();
         let state = point.orbit.state();
         let mut guess = DVector::zeros(2 * n);
@@ -294,15 +284,7 @@ impl Case {
             period: point.orbit.period,
         };
         let stated = point.error.unwrap_or(0.0);
-        let begun = now();
-        let found = question.truth(&guess);
-        eprintln!(
-            "T {} n {} truth {:.2}",
-            self.index,
-            n,
-            (now() - begun).as_secs_f64()
-        );
-        match found {
+        match question.truth(&guess) {
             Ok(truth)
                 if truth.correction > NEAR.max(6.0 * stated)
                     && truth.error < 0.1 * truth.correction =>
@@ -376,7 +358,7 @@ impl Case {
     }
 
     /// A true error, the stated one, and what the true one is known to.
-    fn ratio(
+    pub fn ratio(
         &mut self,
         (of, kind): (&'static str, Kind),
         name: &str,
@@ -440,122 +422,6 @@ impl Case {
         );
     }
 
-    /// Fewer modes than all, against the whole structure.
-    fn reduced(&mut self, whole: &Whole, branch: &Branch) {
-        let n = self.drawn.size();
-        let kept = self.drawn.rigid + 1 + self.random.below(n - 1 - self.drawn.rigid.min(n - 2));
-        let reduction = Reduction::to(self.highest()).modes(kept.min(n - 1));
-        let reduction = match self.random.below(3) {
-            0 => reduction.steps(1),
-            1 => reduction.steps(2),
-            _ => reduction,
-        };
-        let reduced = match reduction.run(&self.sparse) {
-            Ok(reduced) => reduced,
-            Err(error) => return self.find(Kind::Refused, format!("reduced: {error}")),
-        };
-        if reduced.vectors() == n {
-            self.report.count("reductions that leave nothing out");
-            return;
-        }
-        let model = match reduced.structure(&self.sparse) {
-            Ok(model) => model,
-            Err(error) => return self.find(Kind::Refused, format!("reduced: {error}")),
-        };
-        let asked = if self.drawn.held {
-            Asked::Tip
-        } else {
-            Asked::Modes
-        };
-        let Some(few) = self.branch(&model, asked) else {
-            return;
-        };
-        for index in self.chosen(&few, ORBITS[1]) {
-            self.report.count("reduced orbits");
-            self.of_reduced(whole, branch, &reduced, (&few, &few.points[index]));
-        }
-    }
-
-    fn of_reduced(
-        &mut self,
-        whole: &Whole,
-        branch: &Branch,
-        reduced: &Reduced,
-        (few, point): (&Branch, &Point),
-    ) {
-        let size = |branch: &Branch, point: &Point| {
-            let tip = branch.reading("tip", point);
-            tip.map_or(f64::NAN, |tip| tip.motion.peak_to_peak())
-        };
-        // The orbit of the same place among those at this frequency.
-        let of = |branch: &Branch| {
-            let mut points = branch.at(point.value).unwrap_or_default();
-            points.sort_by(|a, b| size(branch, a).total_cmp(&size(branch, b)));
-            points
-        };
-        let (theirs, own) = (of(branch), of(few));
-        let tip = size(few, point);
-        let place = hertzian_tests::nearest(0..own.len(), tip, |i: &usize| size(few, &own[*i]));
-        let Some(place) = place.filter(|_| own.len() == theirs.len()) else {
-            self.report
-                .count("reduced orbits where the whole structure has others");
-            return;
-        };
-        let Some(truth) = self.truth(whole, &theirs[place]) else {
-            return;
-        };
-        let name = format!(
-            "{} of {} vectors by {} at {:?}",
-            reduced.vectors(),
-            self.drawn.size(),
-            few.method().unwrap_or("?"),
-            point.value
-        );
-        self.verdict_of_reduced(&name, &truth, &point.stability);
-        let errors = match reduced.errors_at(&self.sparse, few, point) {
-            Ok(errors) => errors,
-            Err(error) => return self.find(Kind::Refused, format!("{name}: {error}")),
-        };
-        let Some(stated) = point.error.filter(|error| error.is_finite()) else {
-            self.report.count("reduced orbits without a stated error");
-            return;
-        };
-        let stated = stated + errors[0].error;
-        let of = of_one(
-            tip,
-            &truth,
-            self.drawn.size(),
-            [stated, self.drawn.tip.abs().sum()],
-        );
-        self.report.ratio(
-            "true over stated error of reductions that is not small",
-            if of[0] > 1e-9 * tip {
-                of[0] / of[1]
-            } else {
-                0.0
-            },
-        );
-        self.ratio(("reduced orbits", Kind::Reduced), &name, of);
-    }
-
-    fn verdict_of_reduced(&mut self, name: &str, truth: &Truth, stability: &Stability) {
-        let exact = truth.multipliers.first().map_or(0.0, |m| m.norm());
-        let is = match stability.verdict {
-            Verdict::Undecided => return self.report.count("reduced verdicts undecided"),
-            Verdict::Stable => exact < 1.0 + truth.multiplier_error,
-            Verdict::Unstable => exact > 1.0 - truth.multiplier_error,
-        };
-        if is || !self.drawn.held {
-            return self.report.count("reduced verdicts that are right");
-        }
-        let largest = stability.multipliers[0].norm();
-        let text = format!(
-            "{name}: {}, |mu| {largest:.9} +- {:.1e}; it is {exact:.9}",
-            stability.verdict, stability.error
-        );
-        self.find(Kind::FalseReduced, text);
-    }
-
     /// Events of the branch against those by shooting.
     fn events(&mut self, whole: &Whole, branch: &Branch) {
         let request = FrequencyResponse::of(&whole.model).by(Shooting::new());
@@ -563,12 +429,21 @@ impl Case {
             self.report.count("branches by shooting that did not begin");
             return;
         };
-        let [one, other] = [("the branch", branch), ("shooting", &other)]
-            .map(|(name, branch)| Passage::of(name, branch));
-        if !(one.whole && other.whole) || !one.shares_ends(&other) {
+        let walked = |name, branch| Walked {
+            passage: Passage::of(name, branch),
+            branch,
+            units: [1.0; 2],
+        };
+        let (one, other) = (walked("the branch", branch), walked("shooting", &other));
+        let both = if one.passage.whole && other.passage.whole {
+            Some([one.passage, other.passage])
+        } else {
+            as_far(&one, &other)
+        };
+        let Some([one, other]) = both.filter(|[one, other]| one.shares_ends(other)) else {
             self.report.count("pairs of branches that are not compared");
             return;
-        }
+        };
         self.report.count("pairs of branches");
         let matched = matched(&one, &other, self.drawn.range);
         for (alone, missing) in matched.alone.iter().zip([&other, &one]) {
@@ -615,7 +490,7 @@ fn of_modes(point: &Point, truth: &Truth, stated: f64) -> [f64; 3] {
 }
 
 /// The same of the signal that is watched last.
-fn of_one(size: f64, truth: &Truth, watched: usize, [stated, parts]: [f64; 2]) -> [f64; 3] {
+pub fn of_one(size: f64, truth: &Truth, watched: usize, [stated, parts]: [f64; 2]) -> [f64; 3] {
     let [least, most] = truth.extremes[watched];
     [
         (size - (most - least)).abs(),

@@ -19,6 +19,7 @@ use std::f64::consts::TAU;
 use hertzian_tests::tableau::{A, B, C, LOWER, STAGES};
 use nalgebra::{DMatrix, DVector};
 
+use super::borders::root;
 use super::draw::Drawn;
 use super::laws::Force;
 
@@ -27,7 +28,7 @@ const STEPS: usize = 200_000;
 /// Steps in a period at least.
 const LEAST: f64 = 24.0;
 /// The matrix of the linearised motion is known to so many times the tolerance.
-const LOOSER: f64 = 1e3;
+const LOOSER: f64 = 1e2;
 
 /// A structure at a frequency.
 pub struct Motions<'d> {
@@ -39,7 +40,7 @@ pub struct Motions<'d> {
     loads: Vec<(f64, [DVector<f64>; 2])>,
     /// `M^-1 e` of each contact.
     pushed: Vec<DVector<f64>>,
-    levels: Vec<Vec<f64>>,
+    pub levels: Vec<Vec<f64>>,
     /// Sizes of coordinates and of rates.
     pub sizes: [f64; 2],
     pub tolerance: f64,
@@ -55,8 +56,6 @@ pub struct Course {
     pub beside: Option<DMatrix<f64>>,
     /// Smallest and largest value of everything that is watched.
     pub extremes: Vec<[f64; 2]>,
-    /// Contacts that met a level, one after the other.
-    pub met: Vec<usize>,
     /// Smallest rate of a gap at a level, relative to the largest rate.
     pub slowest: f64,
 }
@@ -71,15 +70,15 @@ pub enum Lost {
 }
 
 /// A step from a state at a time.
-struct Step {
-    time: f64,
-    from: DVector<f64>,
-    pieces: Vec<usize>,
+pub struct Step {
+    pub time: f64,
+    pub from: DVector<f64>,
+    pub pieces: Vec<usize>,
 }
 
 /// A step that was taken: the state behind it, its error over the tolerance, and the states of its stages.
-struct Taken {
-    to: DVector<f64>,
+pub struct Taken {
+    pub to: DVector<f64>,
     error: f64,
     stages: Vec<DVector<f64>>,
 }
@@ -130,16 +129,20 @@ impl<'d> Motions<'d> {
         self.sizes[usize::from(entry >= self.drawn.size())]
     }
 
-    /// The motion from a state at time zero on, with what is beside it.
-    pub fn course(&self, state: &DVector<f64>, time: f64, beside: bool) -> Result<Course, Lost> {
+    /// Before anything moves.
+    fn begun(&self, state: &DVector<f64>, beside: bool) -> Course {
         let n = self.drawn.size();
-        let mut course = Course {
+        Course {
             state: state.clone(),
             beside: beside.then(|| DMatrix::identity(2 * n, 2 * n)),
             extremes: self.seen(state, 0).iter().map(|x| [*x; 2]).collect(),
-            met: Vec::new(),
             slowest: f64::INFINITY,
-        };
+        }
+    }
+
+    /// The motion from a state at time zero on, with what is beside it.
+    pub fn course(&self, state: &DVector<f64>, time: f64, beside: bool) -> Result<Course, Lost> {
+        let mut course = self.begun(state, beside);
         let end = time;
         let largest = f64::min(TAU / self.omega, end) / LEAST;
         let mut here = Step {
@@ -161,12 +164,7 @@ impl<'d> Motions<'d> {
                 if shortest {
                     return Err(Lost::Diverged);
                 }
-                step = length
-                    * if whole.error.is_finite() {
-                        (0.9 * whole.error.powf(-0.125)).clamp(0.1, 0.8)
-                    } else {
-                        0.1
-                    };
+                step = length * shorter(whole.error);
                 continue;
             }
             let switch = self.switch(&here, &whole.to, length);
@@ -178,7 +176,7 @@ impl<'d> Motions<'d> {
             if let Some(matrix) = &mut course.beside {
                 let (next, of_matrix) = self.moved(&here, &taken.stages, matrix, length);
                 if of_matrix > 1.0 && length > 1e-15 * end {
-                    step = length * (0.9 * of_matrix.powf(-0.125)).clamp(0.1, 0.8);
+                    step = length * shorter(of_matrix);
                     continue;
                 }
                 *matrix = next;
@@ -211,7 +209,6 @@ impl<'d> Motions<'d> {
         here.pieces[contact] = piece;
         let [_, rate] = self.gap(contact, &here.from);
         course.slowest = course.slowest.min(rate.abs() / self.sizes[1]);
-        course.met.push(contact);
         let jump = (after.value - before.value) / rate;
         if let Some(matrix) = course.beside.as_mut().filter(|_| jump != 0.0) {
             let row = self.drawn.contacts[contact].gap.transpose() * matrix.rows(0, n);
@@ -227,7 +224,7 @@ impl<'d> Motions<'d> {
     }
 
     /// A gap and its rate.
-    fn gap(&self, contact: usize, state: &DVector<f64>) -> [f64; 2] {
+    pub fn gap(&self, contact: usize, state: &DVector<f64>) -> [f64; 2] {
         let n = self.drawn.size();
         let of = &self.drawn.contacts[contact];
         [
@@ -271,7 +268,7 @@ impl<'d> Motions<'d> {
         slope
     }
 
-    fn step(&self, here: &Step, length: f64) -> Taken {
+    pub fn step(&self, here: &Step, length: f64) -> Taken {
         let mut slopes: Vec<DVector<f64>> = Vec::with_capacity(STAGES);
         let mut stages = Vec::with_capacity(STAGES);
         for stage in 0..STAGES {
@@ -363,68 +360,6 @@ impl<'d> Motions<'d> {
         most
     }
 
-    /// The first level that a gap meets in a step: contact, the piece after it, and the time from the beginning.
-    fn switch(&self, here: &Step, to: &DVector<f64>, length: f64) -> Option<(usize, usize, f64)> {
-        let mut first: Option<(usize, usize, f64)> = None;
-        for (contact, levels) in self.levels.iter().enumerate() {
-            let piece = here.pieces[contact];
-            let low = piece
-                .checked_sub(1)
-                .map(|below| (levels[below], 1.0, below));
-            let high = levels.get(piece).map(|level| (*level, -1.0, piece + 1));
-            for (level, sign, after) in low.into_iter().chain(high) {
-                let met = match first {
-                    Some((_, _, at)) => {
-                        self.met(here, (contact, level, sign), at, &self.step(here, at).to)
-                    }
-                    None => self.met(here, (contact, level, sign), length, to),
-                };
-                if let Some(at) = met {
-                    first = Some((contact, after, at));
-                }
-            }
-        }
-        first
-    }
-
-    /// Where a gap leaves its piece through a border, within so much of a step.
-    fn met(
-        &self,
-        here: &Step,
-        (contact, level, sign): (usize, f64, f64),
-        length: f64,
-        to: &DVector<f64>,
-    ) -> Option<f64> {
-        let inside = |[value, rate]: [f64; 2]| [sign * (value - level), sign * rate];
-        let after = |time: f64| inside(self.gap(contact, &self.step(here, time).to));
-        let begin = inside(self.gap(contact, &here.from));
-        let end = inside(self.gap(contact, to));
-        let (mut low, mut high) = ((0.0, begin[0]), (length, end[0]));
-        if begin[1] * end[1] < 0.0 {
-            // It has an extremum within.
-            let extremum_matters = begin[1] < 0.0 || end[0] < 0.0;
-            if extremum_matters {
-                let at = root((0.0, begin[1]), (length, end[1]), |time| after(time)[1]);
-                let extremum = after(at)[0];
-                if extremum < 0.0 && begin[0] > 0.0 {
-                    high = (at, extremum);
-                } else if extremum > 0.0 {
-                    low = (at, extremum);
-                } else if end[0] >= 0.0 {
-                    return None;
-                }
-            }
-        }
-        if high.1 >= 0.0 {
-            return None;
-        }
-        if low.1 <= 0.0 {
-            // It begins on the border and leaves at once.
-            return Some(0.0);
-        }
-        Some(root(low, high, |time| after(time)[0]))
-    }
-
     /// Takes what is seen at the end of a step in, and the extremes within.
     fn widen(&self, here: &Step, to: &DVector<f64>, length: f64, extremes: &mut [[f64; 2]]) {
         let [before, after] =
@@ -467,6 +402,15 @@ impl<'d> Motions<'d> {
     }
 }
 
+/// By what a step is multiplied that has an error of so many times the tolerance.
+fn shorter(error: f64) -> f64 {
+    if error.is_finite() {
+        (0.9 * error.powf(-0.125)).clamp(0.1, 0.8)
+    } else {
+        0.1
+    }
+}
+
 /// Adds so many times a column. Written out, since without optimisation it is faster than what packages have.
 fn add(to: &mut [f64], factor: f64, column: &[f64]) {
     if factor == 0.0 {
@@ -475,28 +419,4 @@ fn add(to: &mut [f64], factor: f64, column: &[f64]) {
     for (x, y) in to.iter_mut().zip(column) {
         *x += factor * y;
     }
-}
-
-/// A zero between two places of different sign: the Illinois method of Dowell and Jarratt (1971), BIT 11, 168.
-fn root(
-    (mut a, mut at_a): (f64, f64),
-    (mut b, mut at_b): (f64, f64),
-    f: impl Fn(f64) -> f64,
-) -> f64 {
-    for _ in 0..60 {
-        let middle = (a * at_b - b * at_a) / (at_b - at_a);
-        let between = middle > a.min(b) && middle < a.max(b);
-        let middle = if between { middle } else { 0.5 * (a + b) };
-        let at_middle = f(middle);
-        if at_middle == 0.0 || (b - a).abs() <= 4.0 * f64::EPSILON * b.abs().max(a.abs()) {
-            return middle;
-        }
-        if at_middle * at_b < 0.0 {
-            (a, at_a) = (b, at_b);
-        } else {
-            at_a *= 0.5;
-        }
-        (b, at_b) = (middle, at_middle);
-    }
-    b
 }

@@ -12,13 +12,15 @@ use super::draw::Drawn;
 use super::motion::{Course, Lost, Motions};
 
 /// Of motions, relative to the size of the orbit.
-const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-13;
 /// The matrix by which states are corrected comes of motions to a looser one, and what motions are exact to of others.
 const CORRECTING: f64 = 1e-9;
-const OTHER: f64 = 1e-10;
+const OTHER: f64 = 1e-11;
+/// How far another state is from the orbit, relative to the sizes.
+const ASIDE: f64 = 1e-8;
 /// This part of what changes with the other tolerance, a hundred times as large, is taken for an error: errors may fall with half a power of
 /// the tolerance.
-const PART: f64 = 0.1;
+const PART: f64 = 0.3;
 const CORRECTIONS: usize = 12;
 /// A correction of the state below this is none.
 const CLOSED: f64 = 1e-11;
@@ -93,7 +95,14 @@ impl Question<'_> {
         if course.slowest < TOUCH {
             return Err(Unsure::Touching);
         }
-        let other = motions(first, OTHER).course(&closed, time, true)?;
+        let loose = motions(first, OTHER);
+        let other = loose.course(&closed, time, false)?;
+        // Where a level is met slowly multipliers depend much on the state.
+        let aside = DVector::from_fn(closed.len(), |i, _| {
+            let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+            closed[i] + sign * ASIDE * first[usize::from(i >= self.drawn.size())]
+        });
+        let beside = loose.course(&aside, time, true)?;
         let left = self.scaled(&(&course.state - &closed), first);
         let apart = self.scaled(&(&course.state - &other.state), first);
         let inverse = self.inverse(&course).ok_or(Unsure::Singular)?;
@@ -101,7 +110,7 @@ impl Question<'_> {
         let matrix = course.beside.as_ref().ok_or(Unsure::Singular)?;
         let grown = row_sum(&self.relative(matrix, first)).max(1.0);
         let found = multipliers(&course);
-        let changed = hertzian_tests::distance(&found, &multipliers(&other));
+        let changed = hertzian_tests::distance(&found, &multipliers(&beside));
         let size = found[0].norm().max(1.0);
         Ok(Truth {
             correction: self.scaled(&(&closed - guess), first),
@@ -109,7 +118,7 @@ impl Question<'_> {
             extreme_error: 4.0 * grown * error * first[0],
             extremes: course.extremes,
             multipliers: found,
-            multiplier_error: PART * changed + 1e-9 * size + 30.0 * grown * error,
+            multiplier_error: (PART + error / ASIDE) * changed + 1e-9 * size,
         })
     }
 

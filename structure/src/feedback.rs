@@ -1,0 +1,298 @@
+//! What the forces of contacts make of an error of the compliance.
+//!
+//! The gaps of the whole structure differ from those of the reduced one by what the error of the compliance makes of the forces, `e_c`, and
+//! by what the reduced structure answers to the forces `-p_c` that contacts change by for that. With the slopes `k_c` and `r_c` of their laws
+//! by gap and rate along the orbit, and the compliance `R`,
+//!
+//! ```text
+//! p_c = k_c (e_c - sum_b R_cb p_b) + r_c (e_c - sum_b R_cb p_b)'                                              (1)
+//! ```
+//!
+//! which is linear in `p`, at equal times of the period where a contact has a slope at all. What an output differs by for that is
+//! `-sum_b R_yb p_b`. The phases of `e` are not known: every harmonic of it at every contact is taken by itself, and all of what they come to
+//! is added up.
+//!
+//! At a fold (1) is singular: at a fixed frequency there is no bound. There the part along the branch is left out, and what is said is how
+//! far the two branches are apart.
+//!
+//! Source: Krack and Gross (2019), Harmonic Balance for Nonlinear Vibration Problems, section 2.4 (alternating between frequency and time);
+//! Nayfeh and Balachandran (1995), Applied Nonlinear Dynamics, section 3.2 (the variational equation).
+
+use std::f64::consts::TAU;
+
+use hertzian::Complex;
+use hertzian::structure::DMatrix;
+
+use crate::doubt::{self, COUPLED};
+use crate::reduced::Reduced;
+
+/// Times of the period.
+pub(crate) const TIMES: usize = 128;
+/// Times at which some contact has a slope, at most: beyond, every second, third and so on is left out.
+const UNKNOWNS: usize = 600;
+/// Harmonics of less than this part of the largest do not matter.
+const NOTHING: f64 = 1e-4;
+/// A frequency of zero is this part of the excitation's highest one where nothing holds the structure but its contacts.
+const SLOW: f64 = 1e-4;
+
+/// Slopes of the law of a contact at all times.
+#[derive(Debug, Clone)]
+pub(crate) struct Slopes {
+    pub(crate) by_gap: Vec<f64>,
+    pub(crate) by_rate: Vec<f64>,
+}
+
+/// What is read: a row of the reduced structure, and its derivatives by time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Read {
+    pub(crate) row: usize,
+    pub(crate) derivatives: i32,
+}
+
+/// An orbit of a reduced structure, and what its contacts do there.
+#[derive(Debug)]
+pub(crate) struct Feedback<'r> {
+    reduced: &'r Reduced,
+    base: f64,
+    /// Amplitudes of all vectors for a force at each contact, harmonic by harmonic.
+    answers: Vec<DMatrix<Complex<f64>>>,
+    slopes: Vec<Slopes>,
+    /// Whether the branch turns at the orbit.
+    at_fold: bool,
+    /// Contact and time of each unknown.
+    unknowns: Vec<(usize, usize)>,
+    /// The matrix of (1).
+    matrix: Option<DMatrix<f64>>,
+}
+
+/// Inverse iterations for the direction in which a matrix is nearest to a singular one.
+const ITERATIONS: usize = 4;
+
+/// The direction in which forces change along a branch at a fold of it: that of the smallest singular value.
+fn along_branch(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let (straight, transposed) = (matrix.clone().lu(), matrix.transpose().lu());
+    let mut along = DMatrix::from_element(matrix.nrows(), 1, 1.0);
+    for _ in 0..ITERATIONS {
+        along = straight.solve(&transposed.solve(&along)?)?;
+        let size = along.norm();
+        if !(size > 0.0 && size.is_finite()) {
+            return None;
+        }
+        along /= size;
+    }
+    Some(along)
+}
+
+/// Values of a periodic function at all times, by its harmonics.
+fn over_period(harmonics: &[Complex<f64>]) -> Vec<f64> {
+    let at = |time: usize| {
+        let terms = harmonics.iter().enumerate().skip(1);
+        let terms = terms.map(|(k, z)| {
+            let phase = TAU * ((k * time) % TIMES) as f64 / TIMES as f64;
+            2.0 * (z.re * phase.cos() - z.im * phase.sin())
+        });
+        harmonics[0].re + terms.sum::<f64>()
+    };
+    (0..TIMES).map(at).collect()
+}
+
+/// Amplitudes of all vectors for a force at each contact.
+fn answer(
+    reduced: &Reduced,
+    damping: &DMatrix<f64>,
+    contacts: usize,
+    harmonic: usize,
+    base: f64,
+) -> DMatrix<Complex<f64>> {
+    let m = reduced.vectors();
+    let frequency = (harmonic as f64 * base).max(SLOW * reduced.to);
+    let push = DMatrix::from_fn(m, contacts, |i, j| {
+        Complex::new(reduced.rows[2 * j + 1][i], 0.0)
+    });
+    let apart = |i: usize, j: usize| damping[(i, j)] == 0.0 && damping[(j, i)] == 0.0;
+    let is_diagonal = (0..m).all(|i| (0..i).all(|j| apart(i, j)));
+    if !is_diagonal && harmonic <= COUPLED {
+        let whole = doubt::dynamic(reduced, damping, frequency);
+        if let Some(answer) = whole.lu().solve(&push) {
+            return answer;
+        }
+    }
+    let own = |i: usize| {
+        let stiffness = reduced.squares[i] - frequency * frequency;
+        Complex::new(stiffness, frequency * damping[(i, i)])
+    };
+    DMatrix::from_fn(m, contacts, |i, j| push[(i, j)] / own(i))
+}
+
+impl<'r> Feedback<'r> {
+    /// Of an orbit of this base frequency, where matrices that turn have these speeds.
+    pub(crate) fn of(
+        reduced: &'r Reduced,
+        speeds: &[f64],
+        base: f64,
+        slopes: Vec<Slopes>,
+        at_fold: bool,
+    ) -> Self {
+        let damping = doubt::damping(reduced, speeds);
+        let contacts = slopes.len();
+        let answers =
+            (0..TIMES / 2).map(|harmonic| answer(reduced, &damping, contacts, harmonic, base));
+        let acts = |of: &Slopes, time: usize| of.by_gap[time] != 0.0 || of.by_rate[time] != 0.0;
+        let all = slopes.iter().enumerate();
+        let all = all.flat_map(|(contact, of)| {
+            let times = (0..TIMES).filter(move |time| acts(of, *time));
+            times.map(move |time| (contact, time))
+        });
+        let all: Vec<_> = all.collect();
+        let every = all.len().div_ceil(UNKNOWNS).max(1);
+        let unknowns = all.into_iter().step_by(every).collect();
+        let mut feedback = Self {
+            reduced,
+            base,
+            answers: answers.collect(),
+            slopes,
+            at_fold,
+            unknowns,
+            matrix: None,
+        };
+        feedback.matrix = feedback.of_forces(every as f64);
+        feedback
+    }
+
+    /// Harmonics of the answer to a force along the direction of a contact, one for each thing that is read.
+    fn answers(&self, read: &[Read], contact: usize) -> Vec<Vec<Complex<f64>>> {
+        let of = |read: &Read| {
+            let row = &self.reduced.rows[read.row];
+            let harmonics = self.answers.iter().enumerate();
+            let harmonics = harmonics.map(|(harmonic, answer)| {
+                let rate = Complex::new(0.0, harmonic as f64 * self.base);
+                let terms = row.iter().enumerate();
+                let terms = terms.map(|(i, d)| answer[(i, contact)] * *d);
+                terms.sum::<Complex<f64>>() * rate.powi(read.derivatives)
+            });
+            harmonics.collect()
+        };
+        read.iter().map(of).collect()
+    }
+
+    /// `1 + k R + r R'` of (1), of forces each of which stands for so many times.
+    fn of_forces(&self, each: f64) -> Option<DMatrix<f64>> {
+        let n = self.unknowns.len();
+        if n == 0 {
+            return None;
+        }
+        let contacts = 0..self.slopes.len();
+        let mut matrix = DMatrix::identity(n, n);
+        for pushed in contacts.clone() {
+            let read = contacts.clone().flat_map(|contact| {
+                [0, 1].map(|derivatives| Read {
+                    row: 2 * contact,
+                    derivatives,
+                })
+            });
+            let kernels = self.kernels(&read.collect::<Vec<_>>(), pushed, each);
+            for (column, &(_, then)) in self.of_contact(pushed) {
+                for (row, &(contact, time)) in self.unknowns.iter().enumerate() {
+                    let since = (TIMES + time - then) % TIMES;
+                    let slopes = &self.slopes[contact];
+                    matrix[(row, column)] += slopes.by_gap[time] * kernels[2 * contact][since]
+                        + slopes.by_rate[time] * kernels[2 * contact + 1][since];
+                }
+            }
+        }
+        Some(matrix)
+    }
+
+    fn of_contact(&self, wanted: usize) -> impl Iterator<Item = (usize, &(usize, usize))> {
+        let unknowns = self.unknowns.iter().enumerate();
+        unknowns.filter(move |(_, (contact, _))| *contact == wanted)
+    }
+
+    /// What a force at one time, which stands for so many, makes of what is read at each time after it.
+    fn kernels(&self, read: &[Read], pushed: usize, each: f64) -> Vec<Vec<f64>> {
+        let answers = self.answers(read, pushed);
+        let share = each / TIMES as f64;
+        let kernel = |answer: &Vec<Complex<f64>>| {
+            let values = over_period(answer);
+            values.into_iter().map(|x| share * x).collect()
+        };
+        answers.iter().map(kernel).collect()
+    }
+
+    /// The largest change of everything that is read, where gaps are off by these amplitudes of each harmonic; not a number where forces are
+    /// not determined.
+    pub(crate) fn changes(&self, read: &[Read], off: &[Vec<f64>]) -> Vec<f64> {
+        let n = self.unknowns.len();
+        let Some(matrix) = &self.matrix else {
+            return vec![0.0; read.len()];
+        };
+        let (count, forces) = self.driven(off);
+        let every = self.every();
+        let Some(mut forces) = matrix.clone().lu().solve(&forces) else {
+            return vec![f64::NAN; read.len()];
+        };
+        if self.at_fold
+            && let Some(along) = along_branch(matrix)
+        {
+            let part = along.transpose() * &forces;
+            forces -= along * part;
+        }
+        let mut whole = vec![DMatrix::<f64>::zeros(TIMES, n); read.len()];
+        for pushed in 0..self.slopes.len() {
+            let kernels = self.kernels(read, pushed, every);
+            for (whole, kernel) in whole.iter_mut().zip(&kernels) {
+                for (column, &(_, then)) in self.of_contact(pushed) {
+                    for time in 0..TIMES {
+                        whole[(time, column)] = kernel[(TIMES + time - then) % TIMES];
+                    }
+                }
+            }
+        }
+        let largest = |whole: &DMatrix<f64>| {
+            let changes = whole * &forces;
+            let of = |source: usize| {
+                let both = (0..TIMES)
+                    .map(|time| changes[(time, 2 * source)].hypot(changes[(time, 2 * source + 1)]));
+                both.fold(0.0, f64::max)
+            };
+            (0..count).map(of).sum()
+        };
+        whole.iter().map(largest).collect()
+    }
+
+    /// The right-hand side of (1) for cosine and sine of every harmonic that gaps are off by at each contact, and how many there are of both.
+    fn driven(&self, off: &[Vec<f64>]) -> (usize, DMatrix<f64>) {
+        let largest = off.iter().flatten().fold(0.0, |most: f64, x| most.max(*x));
+        let sources: Vec<(usize, usize, f64)> = (off.iter().enumerate())
+            .flat_map(|(contact, off)| {
+                let harmonics = off.iter().enumerate();
+                let matter = harmonics.filter(|(_, off)| **off > NOTHING * largest);
+                matter.map(move |(harmonic, off)| (contact, harmonic, *off))
+            })
+            .collect();
+        let slope = |(contact, time): (usize, usize), harmonic: usize, quarter: f64| {
+            let phase = TAU * ((harmonic * time) % TIMES) as f64 / TIMES as f64 - quarter;
+            let rate = -(harmonic as f64) * self.base * phase.sin();
+            let slopes = &self.slopes[contact];
+            slopes.by_gap[time] * phase.cos() + slopes.by_rate[time] * rate
+        };
+        let mut forces = DMatrix::zeros(self.unknowns.len(), 2 * sources.len());
+        for (index, &(contact, harmonic, off)) in sources.iter().enumerate() {
+            for (row, &place) in self.of_contact(contact) {
+                forces[(row, 2 * index)] = off * slope(place, harmonic, 0.0);
+                forces[(row, 2 * index + 1)] = off * slope(place, harmonic, TAU / 4.0);
+            }
+        }
+        (sources.len(), forces)
+    }
+
+    /// How many times an unknown stands for.
+    fn every(&self) -> f64 {
+        let acts = |of: &Slopes| {
+            let pairs = of.by_gap.iter().zip(&of.by_rate);
+            pairs.filter(|(k, r)| **k != 0.0 || **r != 0.0).count()
+        };
+        let all: usize = self.slopes.iter().map(acts).sum();
+        all.div_ceil(UNKNOWNS).max(1) as f64
+    }
+}
