@@ -196,7 +196,7 @@ impl Drawn {
             return;
         }
         let mut matrix = DMatrix::zeros(n, n);
-        for _ in 0..1 + self.random.below(2) {
+        for _ in 0..=self.random.below(2) {
             let a = self.random.below(n - 1);
             let strength = self.random.between(0.05, 0.6) * self.mass[(a, a)];
             matrix[(a, a + 1)] += strength;

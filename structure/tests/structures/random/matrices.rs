@@ -19,7 +19,7 @@ pub fn bonds(n: usize, bonds: &[(usize, usize, f64)], [own, beside]: [f64; 2]) -
 
 /// Mass and stiffness.
 pub fn matrices(random: &mut Random, n: usize, free: bool) -> [DMatrix<f64>; 2] {
-    if n % 2 == 0 && n <= 8 && random.once_in(3) {
+    if n.is_multiple_of(2) && n <= 8 && random.once_in(3) {
         let elements = if free { n / 2 - 1 } else { n / 2 };
         let beam = beam_of(elements, free);
         return [beam.mass(), beam.stiffness()].map(dense);
