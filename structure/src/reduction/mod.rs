@@ -43,7 +43,7 @@ const MOST_STEPS: usize = 6;
 const MULTIPLES: [f64; 8] = [0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 const ASKED: usize = 6;
 /// Of structures with more coordinates (2) is not measured at the harmonics of each orbit.
-const SMALL: usize = 2000;
+const SMALL: usize = 300;
 /// Harmonics of an orbit at which it is.
 const HARMONICS: usize = 32;
 

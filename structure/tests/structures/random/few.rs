@@ -3,7 +3,7 @@
 use hertzian::{Branch, Point, Stability, Verdict};
 use hertzian_structure::{Reduced, Reduction};
 
-use super::judge::{Asked, Case, ORBITS, Whole, of_one};
+use super::judge::{Asked, Case, ORBITS, Whole, of_one, said};
 use super::report::Kind;
 use super::truth::Truth;
 
@@ -76,7 +76,7 @@ impl Case {
             "{} of {} vectors by {} at {:?}",
             reduced.vectors(),
             self.drawn.size(),
-            few.method().unwrap_or("?"),
+            said(few),
             point.value
         );
         self.verdict_of_reduced(&name, &truth, &point.stability);

@@ -8,8 +8,8 @@ use hertzian::error::{ErrorKind, chain};
 use hertzian::structure::Structure;
 use hertzian::system::{Place, Signal};
 use hertzian::{
-    Branch, ContactEquation, Error, FrequencyResponse, OrbitMethod, Point, Shooting, Stability,
-    System, Verdict,
+    Branch, ContactEquation, Error, FrequencyResponse, OrbitMethod, OrbitMethodKind, Point,
+    Shooting, Stability, System, Verdict,
 };
 use hertzian_structure::{Direction, Reduction, SparseStructure};
 use hertzian_tests::passage::{Passage, Walked, as_far, matched};
@@ -204,8 +204,8 @@ impl Case {
                     self.find(Kind::ChangeWithoutEvent, text);
                 }
                 self.report.count(match branch.method() {
-                    Some("shooting") => "branches by shooting",
-                    Some("contact equation") => "branches by the contact equation",
+                    Some(OrbitMethodKind::Shooting) => "branches by shooting",
+                    Some(OrbitMethodKind::ContactEquation) => "branches by the contact equation",
                     _ => "branches by the balance",
                 });
                 if !passage.whole && !passage.cut {
@@ -332,7 +332,7 @@ impl Case {
             let Some(truth) = self.truth(whole, point) else {
                 continue;
             };
-            let name = format!("{} at {:?}", branch.method().unwrap_or("?"), point.value);
+            let name = format!("{} at {:?}", said(branch), point.value);
             self.verdict(&name, &truth, &point.stability);
             let Some(stated) = point.error.filter(|error| error.is_finite()) else {
                 self.report.count("orbits without a stated error");
@@ -497,4 +497,10 @@ pub fn of_one(size: f64, truth: &Truth, watched: usize, [stated, parts]: [f64; 2
         stated * size,
         parts * truth.extreme_error,
     ]
+}
+
+/// By which method a branch was followed.
+pub fn said(branch: &Branch) -> String {
+    let method = branch.method();
+    method.map_or_else(String::new, |method| method.to_string())
 }
