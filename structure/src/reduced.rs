@@ -25,8 +25,6 @@ pub struct Reduced {
     pub(crate) fingerprint: u64,
     pub(crate) coordinates: usize,
     pub(crate) to: f64,
-    /// Not in files of older versions, which are told by their number.
-    #[serde(default)]
     pub(crate) asked: Asked,
     pub(crate) modes: usize,
     /// Squares of frequencies.
@@ -40,8 +38,14 @@ pub struct Reduced {
     pub(crate) checked: Vec<Checked>,
 }
 
+/// The number of the version of a file, which is read before all else: what other versions hold may be named otherwise.
+#[derive(Debug, Deserialize)]
+struct Numbered {
+    version: u32,
+}
+
 /// What was asked of a reduction besides the frequency.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Asked {
     pub(crate) modes: Option<usize>,
@@ -359,16 +363,15 @@ impl Reduced {
     /// Reads it from a file.
     ///
     /// # Errors
-    /// If the file holds something else.
+    /// If the file cannot be read, is of another version or holds something else.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReducedError> {
         let text = std::fs::read(path)?;
-        let reduced: Self = serde_json::from_slice(&text)?;
-        if reduced.version != Self::VERSION {
-            return Err(ReducedError::Version {
-                found: reduced.version,
-                known: Self::VERSION,
-            });
+        let Numbered { version: found } = serde_json::from_slice(&text)?;
+        let known = Self::VERSION;
+        if found != known {
+            return Err(ReducedError::Version { found, known });
         }
+        let reduced: Self = serde_json::from_slice(&text)?;
         if !reduced.fits() {
             return Err(ReducedError::Sizes);
         }

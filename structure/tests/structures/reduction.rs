@@ -347,6 +347,14 @@ fn a_changed_file_of_a_reduced_structure_is_refused() {
     }
     let older = changed("/version", json!(1)).expect_err("a version");
     assert!(matches!(older, ReducedError::Version { found: 1, .. }));
+    // Version 3 had no coupling, and it is the version that is said.
+    let mut third = sound.clone();
+    third["version"] = json!(3);
+    let coupling = third.as_object_mut().and_then(|all| all.remove("coupling"));
+    assert!(coupling.is_some());
+    std::fs::write(&path, third.to_string()).unwrap();
+    let older = Reduced::read(&path).expect_err("a version");
+    assert!(matches!(older, ReducedError::Version { found: 3, .. }));
     for (pointer, value) in [("/coordinates", json!(7)), ("/gyroscopic", json!([]))] {
         let other = changed(pointer, value).unwrap();
         assert!(matches!(other.is_of(&structure), Err(ReducedError::Other)));
