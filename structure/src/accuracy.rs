@@ -20,7 +20,7 @@ use hertzian::{Branch, Error, Point};
 use crate::description::{LoadKind, SparseContact, SparseStructure};
 use crate::doubt::Doubt;
 use crate::feedback::{Feedback, Read, Slopes, TIMES};
-use crate::reduced::Reduced;
+use crate::reduced::{Reduced, ReducedError};
 
 /// A multiplier so near to one is that of a fold.
 const TURNS: f64 = 1e-4;
@@ -80,13 +80,14 @@ impl Reduced {
     /// What the reduction changes of each output of a structure at an orbit of a branch of it.
     ///
     /// # Errors
-    /// If the orbit cannot be read.
+    /// If it is a reduction of [another structure](Self::is_of), or the orbit cannot be read.
     pub fn errors_at(
         &self,
         structure: &SparseStructure,
         branch: &Branch,
         point: &Point,
-    ) -> Result<Vec<OutputError>, Error> {
+    ) -> Result<Vec<OutputError>, ReducedError> {
+        self.is_of(structure)?;
         let (forces, base) = forces(structure, branch, point)?;
         let first = 2 * structure.contacts.len() + structure.loads.len();
         let measured = self.measured(structure, base);

@@ -7,7 +7,7 @@ use hertzian::Error;
 use hertzian::structure::{Contact, DMatrix, Structure, Value};
 use serde::{Deserialize, Serialize};
 
-use crate::description::{LoadKind, OutputKind, SparseStructure};
+use crate::description::{Damping, LoadKind, OutputKind, SparseStructure};
 use crate::doubt::Doubt;
 use crate::feedback::TIMES;
 
@@ -133,6 +133,9 @@ pub enum ReducedError {
         /// What is asked for.
         asked: String,
     },
+    /// An orbit cannot be read.
+    #[error("{0}")]
+    Orbit(#[from] Error),
 }
 
 impl Reduced {
@@ -392,6 +395,9 @@ impl Reduced {
             && mirrored(&self.damping, m, 1.0)
             && self.gyroscopic.iter().all(|g| mirrored(g, m, -1.0))
             && self.coupling.iter().all(|c| c.len() == m * m)
+            && [false, true]
+                .map(|given| self.couplings(given))
+                .contains(&self.coupling.len())
             && rows
             && !self.checked.is_empty()
             && self.checked.iter().all(sound)
@@ -399,17 +405,32 @@ impl Reduced {
             && columns.is_multiple_of(self.rows.len().max(1))
     }
 
+    /// How many pairs of matrices couple the vectors with what is left out, where the damping matrix is given by its entries or not.
+    fn couplings(&self, given: bool) -> usize {
+        if self.vectors() == self.coordinates {
+            // Nothing is left out.
+            return 0;
+        }
+        (usize::from(given) + self.gyroscopic.len()).pow(2)
+    }
+
     /// Whether it is of this structure.
     ///
     /// # Errors
-    /// If matrices or directions are others.
+    /// If its numbers do not fit each other, or matrices or directions are others.
     pub fn is_of(&self, structure: &SparseStructure) -> Result<(), ReducedError> {
+        // It need not come of a file that was looked at.
+        if !self.fits() {
+            return Err(ReducedError::Sizes);
+        }
+        let given = matches!(structure.damping, Damping::Matrix(_));
         let driven = Self::driven(structure);
         let rows = driven + structure.outputs.len();
         let is_of = self.fingerprint == Self::fingerprint_of(structure)
             && self.coordinates == structure.coordinates()
             && self.rows.len() == rows
             && self.gyroscopic.len() == structure.gyroscopic.len()
+            && self.coupling.len() == self.couplings(given)
             && self.checked.iter().all(|c| c.errors.len() == rows * driven);
         if is_of {
             Ok(())

@@ -119,7 +119,7 @@ mod sparse {
         ///
         /// # Errors
         /// Never.
-        pub fn of(&self, _: &[Branch]) -> Result<Reduction, hertzian::Error> {
+        pub fn of(&self, _: &[Branch]) -> Result<Reduction, Failure> {
             Ok(Reduction {
                 coordinates: 0,
                 modes: 0,
@@ -134,7 +134,7 @@ mod sparse {
 
 #[cfg(feature = "sparse")]
 mod sparse {
-    use hertzian::{Branch, Cancel, Error, System};
+    use hertzian::{Branch, Cancel, System};
     use hertzian_structure::{self as structures, SparseStructure, file};
 
     use super::{Failure, Options, Reduced, Reduction};
@@ -201,19 +201,28 @@ mod sparse {
         Ok(reduced)
     }
 
+    /// The library says what is wrong with an orbit.
+    fn unreadable(error: structures::ReducedError) -> Failure {
+        match error {
+            structures::ReducedError::Orbit(error) => Failure::Library(error),
+            other => failure(other),
+        }
+    }
+
     impl Reduced {
         /// What the reduction changes along branches.
         ///
         /// # Errors
         /// If an orbit cannot be read.
-        pub fn of(&self, branches: &[Branch]) -> Result<Reduction, Error> {
+        pub fn of(&self, branches: &[Branch]) -> Result<Reduction, Failure> {
             let mut outputs: Vec<(String, f64)> = Vec::new();
             for branch in branches {
                 let step = branch.points.len().div_ceil(LOOKED_AT).max(1);
                 let points = branch.points.iter().step_by(step);
                 let events = branch.events.iter().map(|event| &event.point);
                 for point in points.chain(events) {
-                    for found in self.reduced.errors_at(&self.whole, branch, point)? {
+                    let found = self.reduced.errors_at(&self.whole, branch, point);
+                    for found in found.map_err(unreadable)? {
                         match outputs.iter_mut().find(|(name, _)| *name == found.name) {
                             Some((_, worst)) => *worst = worst.max(found.error),
                             None => outputs.push((found.name, found.error)),

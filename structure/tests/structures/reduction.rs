@@ -296,41 +296,67 @@ fn what_was_kept_is_that_of_the_options_it_was_made_with() {
     assert!(said(asked().tolerance(1e-3)).contains("a compliance to 1e-6"));
 }
 
-/// What was changed in a file so that its numbers do not fit each other is refused, and what is of another structure.
-#[test]
-fn a_changed_file_of_a_reduced_structure_is_refused() {
+/// A bar with a damper between its coordinates and the ground, which turns.
+fn turning(kind: LoadKind) -> SparseStructure {
     let n = 6;
     let spins = [(0, 1, 0.3), (1, 0, -0.3)];
     let spins = SparseMatrix::from_triplets(n, n, spins).unwrap();
     let dampers = SparseMatrix::from_triplets(n, n, [(2, 2, 0.1)]).unwrap();
-    let of = |kind: LoadKind| {
-        bar(n, false)
-            .damping(Damping::Matrix(dampers.clone()))
-            .gyroscopic(Gyroscopic {
-                matrix: spins.clone(),
-                speed: parameter("speed", 1.0),
-            })
-            .load(Load::new(kind, Direction::at(n - 1), parameter("a", 0.1)))
-    };
-    let structure = of(LoadKind::Force);
-    let reduced = Reduction::to(3.0).modes(2).run(&structure).unwrap();
-    assert!(reduced.is_of(&structure).is_ok());
-    // A base moves the masses: its vectors are others.
-    assert!(reduced.is_of(&of(LoadKind::Base)).is_err());
-    let name = format!("hertzian-changed-{}.json", std::process::id());
+    bar(n, false)
+        .damping(Damping::Matrix(dampers))
+        .gyroscopic(Gyroscopic {
+            matrix: spins,
+            speed: parameter("speed", 1.0),
+        })
+        .load(Load::new(kind, Direction::at(n - 1), parameter("a", 0.1)))
+}
+
+/// By three of its six vectors, so that something is left out.
+fn by_few() -> Reduced {
+    let asked = Reduction::to(3.0).modes(2).steps(1);
+    asked.run(&turning(LoadKind::Force)).unwrap()
+}
+
+/// What is read of a file that holds other values at some places, or nothing there.
+fn changed(
+    name: &str,
+    changes: impl IntoIterator<Item = (&'static str, Option<serde_json::Value>)>,
+) -> Result<Reduced, ReducedError> {
+    let name = format!("hertzian-changed-{name}-{}.json", std::process::id());
     let path = std::env::temp_dir().join(name);
-    reduced.write(&path).unwrap();
-    let sound: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
-    let changed = |pointer: &str, value: serde_json::Value| {
-        let mut all = sound.clone();
-        *all.pointer_mut(pointer).expect(pointer) = value;
-        std::fs::write(&path, all.to_string()).unwrap();
-        Reduced::read(&path)
-    };
+    by_few().write(&path).unwrap();
+    let mut all: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    for (pointer, value) in changes {
+        let place = all.pointer_mut(pointer).expect(pointer);
+        if let Some(value) = value {
+            *place = value;
+        } else {
+            let fields = all.as_object_mut().expect("fields");
+            fields.remove(pointer.trim_start_matches('/'));
+        }
+    }
+    std::fs::write(&path, all.to_string()).unwrap();
+    let read = Reduced::read(&path);
+    std::fs::remove_file(&path).unwrap();
+    read
+}
+
+/// What was changed in a file so that its numbers do not fit each other is refused.
+#[test]
+fn a_changed_file_of_a_reduced_structure_is_refused() {
+    let reduced = by_few();
+    assert_eq!(reduced.vectors(), 3);
+    let block = vec![0.0; 9];
     for (pointer, value) in [
         ("/damping/1", json!(7.0)),
         ("/gyroscopic/0/0", json!(1.0)),
         ("/gyroscopic/0/1", json!(9.0)),
+        ("/gyroscopic", json!([])),
+        ("/coupling/3", json!([1.0])),
+        ("/coupling", json!([])),
+        ("/coupling", json!([block, block])),
+        ("/coupling", json!([block, block, block, block, block])),
         ("/rows/0", json!([1.0])),
         ("/modes", json!(0)),
         ("/modes", json!(100)),
@@ -342,24 +368,45 @@ fn a_changed_file_of_a_reduced_structure_is_refused() {
         ("/checked/1/frequency", json!(1e9)),
         ("/checked/0/errors", json!([0.0, 0.0])),
     ] {
-        let error = changed(pointer, value).expect_err(pointer);
+        let error = changed("sizes", [(pointer, Some(value))]).expect_err(pointer);
         assert!(matches!(error, ReducedError::Sizes), "{pointer}: {error}");
     }
-    let older = changed("/version", json!(1)).expect_err("a version");
-    assert!(matches!(older, ReducedError::Version { found: 1, .. }));
-    // Version 3 had no coupling, and it is the version that is said.
-    let mut third = sound.clone();
-    third["version"] = json!(3);
-    let coupling = third.as_object_mut().and_then(|all| all.remove("coupling"));
-    assert!(coupling.is_some());
-    std::fs::write(&path, third.to_string()).unwrap();
-    let older = Reduced::read(&path).expect_err("a version");
-    assert!(matches!(older, ReducedError::Version { found: 3, .. }));
-    for (pointer, value) in [("/coordinates", json!(7)), ("/gyroscopic", json!([]))] {
-        let other = changed(pointer, value).unwrap();
+}
+
+/// Files of older versions have fewer fields, and it is the version that is said.
+#[test]
+fn files_of_older_versions_are_told_by_their_version() {
+    let first = changed("first", [("/version", Some(json!(1)))]);
+    let first = first.expect_err("a version");
+    assert!(matches!(first, ReducedError::Version { found: 1, .. }));
+    let third = [("/version", Some(json!(3))), ("/coupling", None)];
+    let third = changed("third", third).expect_err("a version");
+    assert!(matches!(third, ReducedError::Version { found: 3, .. }));
+}
+
+#[test]
+fn a_reduction_of_another_structure_is_refused() {
+    let structure = turning(LoadKind::Force);
+    let reduced = by_few();
+    assert!(reduced.is_of(&structure).is_ok());
+    // A base moves the masses: its vectors are others.
+    assert!(reduced.is_of(&turning(LoadKind::Base)).is_err());
+    for (pointer, value) in [
+        ("/coordinates", json!(7)),
+        // As of one without a damping matrix that is given by its entries.
+        ("/coupling", json!([vec![0.0; 9]])),
+    ] {
+        let other = changed("other", [(pointer, Some(value))]).unwrap();
         assert!(matches!(other.is_of(&structure), Err(ReducedError::Other)));
     }
-    std::fs::remove_file(&path).unwrap();
+    // Nor is anything said by it of orbits of another structure.
+    let one = bar(6, false).load(Load::force(Direction::at(0), 0.1));
+    let whole = Reduction::to(3.0).run(&one).unwrap();
+    let model = whole.structure(&one).unwrap();
+    let branch = hertzian::FrequencyResponse::of(&model).from(0.5).to(0.6);
+    let branch = branch.run().unwrap();
+    let refused = reduced.errors_at(&one, &branch, &branch.points[0]);
+    assert!(matches!(refused, Err(ReducedError::Other)));
 }
 
 /// One mass on a spring: loads of all kinds have the amplitudes of their formulas.
