@@ -1,9 +1,9 @@
 //! A structure by fewer modes than all, against the whole one.
 
-use hertzian::{Branch, Point, Stability, Verdict};
+use hertzian::{Branch, Point, Stability};
 use hertzian_structure::{Reduced, Reduction};
 
-use super::judge::{Asked, Case, ORBITS, Whole, of_one, said};
+use super::judge::{Asked, Case, Judged, ORBITS, Whole, of_one, said};
 use super::report::Kind;
 use super::truth::Truth;
 
@@ -84,10 +84,15 @@ impl Case {
             Ok(errors) => errors,
             Err(error) => return self.find(Kind::Refused, format!("{name}: {error}")),
         };
-        let Some(stated) = point.error.filter(|error| error.is_finite()) else {
+        let Some(stated) = self.stated(&name, point) else {
             self.report.count("reduced orbits without a stated error");
             return;
         };
+        if errors[0].error.is_infinite() {
+            return self
+                .report
+                .count("reduced orbits without a bound of what the reduction changes");
+        }
         let stated = stated + errors[0].error;
         let of = of_one(
             tip,
@@ -99,20 +104,24 @@ impl Case {
     }
 
     fn verdict_of_reduced(&mut self, name: &str, truth: &Truth, stability: &Stability) {
-        let exact = truth.multipliers.first().map_or(0.0, |m| m.norm());
-        let is = match stability.verdict {
-            Verdict::Undecided => return self.report.count("reduced verdicts undecided"),
-            Verdict::Stable => exact < 1.0 + truth.multiplier_error,
-            Verdict::Unstable => exact > 1.0 - truth.multiplier_error,
-        };
-        if is || !self.drawn.held {
-            return self.report.count("reduced verdicts that are right");
-        }
-        let largest = stability.multipliers[0].norm();
-        let text = format!(
-            "{name}: {}, |mu| {largest:.9} +- {:.1e}; it is {exact:.9}",
-            stability.verdict, stability.error
+        let known = truth.elastic(stability.rigid);
+        self.report.count(
+            match Judged::of(stability.verdict, &known, truth.multiplier_error) {
+                Judged::Undecided => "reduced verdicts undecided",
+                Judged::Open => "reduced verdicts that the truth leaves open",
+                Judged::Right => "reduced verdicts that are right",
+                Judged::NoNumber => {
+                    return self.find(Kind::NoNumber, format!("{name}: multipliers"));
+                }
+                Judged::False(exact) => {
+                    let largest = stability.multipliers[0].norm();
+                    let text = format!(
+                        "{name}: {}, |mu| {largest:.9} +- {:.1e}; it is {exact:.9}",
+                        stability.verdict, stability.error
+                    );
+                    return self.find(Kind::FalseReduced, text);
+                }
+            },
         );
-        self.find(Kind::FalseReduced, text);
     }
 }

@@ -8,8 +8,8 @@ use hertzian::error::{ErrorKind, chain};
 use hertzian::structure::Structure;
 use hertzian::system::{Place, Signal};
 use hertzian::{
-    Branch, ContactEquation, Error, FrequencyResponse, OrbitMethod, OrbitMethodKind, Point,
-    Shooting, Stability, System, Verdict,
+    Branch, Complex, ContactEquation, Error, FrequencyResponse, OrbitMethod, OrbitMethodKind,
+    Point, Shooting, Stability, System, Verdict,
 };
 use hertzian_structure::{Direction, Reduction, SparseStructure};
 use hertzian_tests::passage::{Passage, Walked, as_far, matched};
@@ -90,6 +90,39 @@ pub struct Whole {
     pub modes: DMatrix<f64>,
     /// What is watched of true orbits: amplitudes of modes, and the tip.
     pub watched: DMatrix<f64>,
+}
+
+/// What a verdict is against the truth.
+pub enum Judged {
+    Undecided,
+    Right,
+    /// Nearer to one than what is known of the multiplier.
+    Open,
+    /// The largest multiplier says otherwise: its modulus.
+    False(f64),
+    NoNumber,
+}
+
+impl Judged {
+    /// Of known multipliers, the largest first, and what they are known to.
+    pub fn of(verdict: Verdict, known: &[Complex<f64>], unsure: f64) -> Self {
+        let exact = known.first().map_or(0.0, |m| m.norm());
+        let margin = match verdict {
+            Verdict::Stable => exact - 1.0,
+            Verdict::Unstable => 1.0 - exact,
+            Verdict::Undecided => return Self::Undecided,
+        };
+        let mut moduli = known.iter().map(|multiplier| multiplier.norm());
+        if moduli.any(f64::is_nan) || unsure.is_nan() {
+            Self::NoNumber
+        } else if margin > unsure {
+            Self::False(exact)
+        } else if margin.abs() < unsure {
+            Self::Open
+        } else {
+            Self::Right
+        }
+    }
 }
 
 impl Case {
@@ -334,7 +367,7 @@ impl Case {
             };
             let name = format!("{} at {:?}", said(branch), point.value);
             self.verdict(&name, &truth, &point.stability);
-            let Some(stated) = point.error.filter(|error| error.is_finite()) else {
+            let Some(stated) = self.stated(&name, point) else {
                 self.report.count("orbits without a stated error");
                 continue;
             };
@@ -357,6 +390,14 @@ impl Case {
         }
     }
 
+    /// The stated error of an orbit, where there is a bound.
+    pub fn stated(&mut self, name: &str, point: &Point) -> Option<f64> {
+        if point.error.is_some_and(f64::is_nan) {
+            self.find(Kind::NoNumber, format!("{name}: the stated error"));
+        }
+        point.error.filter(|error| error.is_finite())
+    }
+
     /// A true error, the stated one, and what the true one is known to.
     pub fn ratio(
         &mut self,
@@ -364,7 +405,13 @@ impl Case {
         name: &str,
         [error, stated, unsure]: [f64; 3],
     ) {
-        let ratio = (error - unsure).max(0.0) / stated;
+        let excess = error - unsure;
+        // What is no number would pass for less than what is stated.
+        if excess.is_nan() || stated.is_nan() {
+            let text = format!("{name}: {error} true (known to {unsure}), {stated} stated");
+            return self.find(Kind::NoNumber, text);
+        }
+        let ratio = if excess > 0.0 { excess / stated } else { 0.0 };
         if ratio > 3.0 {
             let text =
                 format!("{name}: {error:.2e} true (known to {unsure:.0e}), {stated:.2e} stated");
@@ -374,34 +421,21 @@ impl Case {
     }
 
     fn verdict(&mut self, name: &str, truth: &Truth, stability: &Stability) {
-        let mut known = truth.multipliers.clone();
-        for _ in 0..stability.rigid {
-            let one = |i: &usize| (known[*i] - 1.0).norm();
-            if let Some(i) = hertzian_tests::nearest(0..known.len(), 0.0, one) {
-                known.remove(i);
-            }
-        }
-        let exact = known.first().map_or(0.0, |m| m.norm());
+        let known = truth.elastic(stability.rigid);
         let (stated, unsure) = (stability.error, truth.multiplier_error);
-        let margin = match stability.verdict {
-            Verdict::Stable => exact - 1.0,
-            Verdict::Unstable => 1.0 - exact,
-            Verdict::Undecided => {
-                self.report.count("verdicts undecided");
-                return;
+        match Judged::of(stability.verdict, &known, unsure) {
+            Judged::Undecided => return self.report.count("verdicts undecided"),
+            Judged::Open => self.report.count("verdicts that the truth leaves open"),
+            Judged::Right => self.report.count("verdicts that are right"),
+            Judged::NoNumber => self.find(Kind::NoNumber, format!("{name}: multipliers")),
+            Judged::False(exact) => {
+                let largest = stability.multipliers[0].norm();
+                let text = format!(
+                    "{name}: {}, |mu| {largest:.9} +- {stated:.1e}; it is {exact:.9} +- {unsure:.0e}",
+                    stability.verdict
+                );
+                self.find(Kind::FalseVerdict, text);
             }
-        };
-        if margin > unsure {
-            let largest = stability.multipliers[0].norm();
-            let text = format!(
-                "{name}: {}, |mu| {largest:.9} +- {stated:.1e}; it is {exact:.9} +- {unsure:.0e}",
-                stability.verdict
-            );
-            self.find(Kind::FalseVerdict, text);
-        } else if margin.abs() < unsure {
-            self.report.count("verdicts that the truth leaves open");
-        } else {
-            self.report.count("verdicts that are right");
         }
         if known.len() != stability.multipliers.len() {
             self.find(
@@ -414,7 +448,13 @@ impl Case {
             );
             return;
         }
-        let error = hertzian_tests::distance(&stability.multipliers, &known);
+        // The largest distance has no place for what is no number.
+        let mut multipliers = stability.multipliers.iter();
+        let error = if multipliers.any(|multiplier| multiplier.norm().is_nan()) {
+            f64::NAN
+        } else {
+            hertzian_tests::distance(&stability.multipliers, &known)
+        };
         self.ratio(
             ("multipliers of all modes", Kind::Multipliers),
             name,
@@ -483,7 +523,15 @@ fn of_modes(point: &Point, truth: &Truth, stated: f64) -> [f64; 3] {
             truth.extreme_error,
         ]
     };
-    let worst = |[error, stated, unsure]: &[f64; 3]| (error - unsure) / stated;
+    // What is no number is the worst.
+    let worst = |[error, stated, unsure]: &[f64; 3]| {
+        let excess = error - unsure;
+        if excess.is_nan() {
+            f64::INFINITY
+        } else {
+            excess / stated
+        }
+    };
     let all = motions.iter().enumerate().map(of);
     all.max_by(|a, b| worst(a).total_cmp(&worst(b)))
         .unwrap_or_default()

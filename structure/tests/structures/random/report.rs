@@ -16,6 +16,8 @@ pub enum Kind {
     NotClosed,
     /// The orbit near one that was found is farther than an orbit may err.
     Elsewhere,
+    /// Something that was compared is no number.
+    NoNumber,
     /// A structure, or a request of it, was refused.
     Refused,
     /// An error of an orbit beyond three times the one stated.
@@ -47,6 +49,7 @@ impl Display for Kind {
             Self::FalseReduced => "another verdict than that of the whole structure",
             Self::NotClosed => "no orbit is there",
             Self::Elsewhere => "the true orbit is elsewhere",
+            Self::NoNumber => "no number",
             Self::Refused => "refused",
             Self::Orbit => "error of an orbit beyond three times the stated one",
             Self::Reduced => "error of a reduction beyond three times the stated one",

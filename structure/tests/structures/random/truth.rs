@@ -47,6 +47,20 @@ pub struct Truth {
     pub multiplier_error: f64,
 }
 
+impl Truth {
+    /// Its multipliers without those of so many rigid motions, which are one.
+    pub fn elastic(&self, rigid: usize) -> Vec<Complex<f64>> {
+        let mut known = self.multipliers.clone();
+        for _ in 0..rigid {
+            let one = |i: &usize| (known[*i] - 1.0).norm();
+            if let Some(i) = hertzian_tests::nearest(0..known.len(), 0.0, one) {
+                known.remove(i);
+            }
+        }
+        known
+    }
+}
+
 /// Why nothing is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unsure {
