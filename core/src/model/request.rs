@@ -103,9 +103,9 @@ pub enum RequestError {
     /// A branch that was read from a file was asked for what takes its model.
     #[error("the branch was read from a file and has no model: give it one by `attach(&model)`")]
     Detached,
-    /// A backbone was asked for orbits that are not in it.
+    /// A backbone was asked for orbits that are not in it, or for derivatives or multipliers, which are those at a fixed frequency.
     #[error(
-        "the branch is a backbone, and has no orbits but its own: ask for others by a frequency response"
+        "the branch is a backbone, whose frequency goes with the orbit: it has no orbits but its own, and neither derivatives nor multipliers; ask for them by a frequency response"
     )]
     Backbone,
     /// The model given to a branch is not its own.

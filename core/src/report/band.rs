@@ -68,9 +68,10 @@ impl Branch {
     /// ```
     ///
     /// # Errors
-    /// If there is no parameter of a name, what is shown has no derivative, or the branch was read from a file and has no
-    /// [model](Self::attach).
+    /// If there is no parameter of a name, what is shown has no derivative, or the branch is a [backbone](crate::backbone), the frequency of
+    /// which is not fixed, or was read from a file and has no [model](Self::attach).
     pub fn band(&self, view: &View, uncertain: &[Uncertain]) -> Result<Band, Error> {
+        self.is_no_backbone()?;
         let seen = view.on(self)?;
         let wanted = [seen.wanted.clone()];
         let mut by: Vec<&str> = uncertain.iter().map(Uncertain::name).collect();

@@ -48,13 +48,14 @@ impl Branch {
     /// ```
     ///
     /// # Errors
-    /// If there is no parameter of a name.
+    /// If there is no parameter of a name, or the branch is a [backbone](crate::backbone), which has no such derivatives.
     pub fn tornado(
         &self,
         event: &Event,
         moves: &Sensitivities,
         uncertain: &[Uncertain],
     ) -> Result<Chart, Error> {
+        self.is_no_backbone()?;
         let usual;
         let uncertain = if uncertain.is_empty() {
             usual = self.usual()?;

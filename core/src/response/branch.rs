@@ -364,14 +364,23 @@ impl Branch {
         }
     }
 
+    /// Whether what is asked for at a fixed value of what is varied makes sense of it.
+    ///
+    /// # Errors
+    /// If it is a backbone, along which the frequency goes with the orbit.
+    pub(crate) fn is_no_backbone(&self) -> Result<(), Error> {
+        if self.further.is_backbone {
+            return Err(RequestError::Backbone.into());
+        }
+        Ok(())
+    }
+
     /// What followed it, to compute further orbits by.
     ///
     /// # Errors
     /// If it has no model, or is a backbone.
     pub(super) fn following(&self) -> Result<&Following, Error> {
-        if self.further.is_backbone {
-            return Err(RequestError::Backbone.into());
-        }
+        self.is_no_backbone()?;
         self.followed()
     }
 

@@ -19,9 +19,10 @@ impl Branch {
     /// Applies a method to an orbit of this branch.
     ///
     /// # Errors
-    /// If the orbit belongs to a system with another number of coordinates or parameters, or the branch was read from a file and has no
-    /// [model](Self::attach).
+    /// If the orbit belongs to a system with another number of coordinates or parameters, or the branch is a [backbone](crate::backbone), of
+    /// the stability of which nothing is known, or was read from a file and has no [model](Self::attach).
     pub fn multipliers(&self, point: &Point, method: Method) -> Result<Answer, Error> {
+        self.is_no_backbone()?;
         let point = &self.complete(point)?;
         let context = &self.context(point)?;
         let facts = context.system.facts();

@@ -34,7 +34,8 @@ impl Branch {
     /// ```
     ///
     /// # Errors
-    /// If the branch was read from a file and has no [model](Self::attach), the orbit is at a fold or is not found again.
+    /// If the branch is a [backbone](crate::backbone), the frequency of which is not fixed, or was read from a file and has no
+    /// [model](Self::attach), or if the orbit is at a fold or is not found again.
     pub fn sensitivities(&self, point: &Point) -> Result<Sensitivities, Error> {
         let problem = Sensitive::of(self, point)?;
         problem.with_multipliers(&rows::all(&self.model))
@@ -116,8 +117,8 @@ impl Branch {
     /// ```
     ///
     /// # Errors
-    /// If branches cross there, which a change of parameters undoes, the multiplier that decides is a repeated one, the branch was read from a
-    /// file and has no [model](Self::attach), or the event is not found again.
+    /// If branches cross there, which a change of parameters undoes, the multiplier that decides is a repeated one, the branch is a
+    /// [backbone](crate::backbone) or was read from a file and has no [model](Self::attach), or the event is not found again.
     pub fn event_sensitivities(&self, event: &Event) -> Result<Sensitivities, Error> {
         let rows = rows::all(&self.model);
         Sensitive::of(self, &event.point)?.of_event(event, &rows, true)

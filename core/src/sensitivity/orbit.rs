@@ -87,7 +87,12 @@ pub(super) fn finite(error: f64) -> f64 {
 }
 
 impl<'p> Sensitive<'p> {
+    /// At an orbit of a branch.
+    ///
+    /// # Errors
+    /// If the branch has no model, or is a backbone, along which the frequency is not fixed.
     pub(super) fn of(branch: &Branch, point: &'p Point) -> Result<Self, Error> {
+        branch.is_no_backbone()?;
         let system = branch.system().ok_or(RequestError::Detached)?.shared();
         let parameters = 0..system.facts().parameters.len();
         let facts = &system.facts().parameters;

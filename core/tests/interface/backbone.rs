@@ -1,6 +1,7 @@
 //! A backbone is a branch: it is drawn, written and read as any other, and has no orbits but its own.
 
 use hertzian::backbone::{FreeOscillation, PhaseResonance};
+use hertzian::stability::Method;
 use hertzian::{Branch, Error, OrbitMethodKind, RequestError};
 
 hertzian::oscillator! {
@@ -101,6 +102,21 @@ fn it_has_no_orbits_but_its_own() {
     assert!(backbones().iter().all(has_no_others));
 }
 
+/// Its frequency goes with the orbit: derivatives at a fixed frequency are none of its own, and nothing is known of its stability.
+fn has_no_derivatives(curve: &Branch) -> bool {
+    let point = curve.points.last().expect("an orbit");
+    let wanted = ["x:p2p".parse().expect("a measure")];
+    is_refused(curve.sensitivities(point))
+        && is_refused(curve.sensitivities_of(point, &wanted))
+        && is_refused(curve.quick_sensitivities_of(point, &wanted, &["drive"]))
+        && is_refused(curve.multipliers(point, Method::Hill))
+}
+
+#[test]
+fn it_has_no_derivatives_and_no_multipliers() {
+    assert!(backbones().iter().all(has_no_derivatives));
+}
+
 #[cfg(feature = "serde")]
 #[test]
 fn what_is_read_is_what_was_written() {
@@ -112,7 +128,7 @@ fn what_is_read_is_what_was_written() {
         assert_eq!(read, *curve);
         assert!(has_no_others(&read));
         read.attach(model).expect("its model");
-        assert!(has_no_others(&read));
+        assert!(has_no_others(&read) && has_no_derivatives(&read));
         let last = read.points.last().expect("an orbit");
         assert_eq!(read.complete(last), curve.complete(last));
         // And once more.
@@ -125,7 +141,14 @@ fn what_is_read_is_what_was_written() {
 #[cfg(feature = "plot")]
 #[test]
 fn it_is_drawn() {
+    use hertzian::chart::View;
+
     let [free, resonance] = backbones();
     assert!(free.chart().to_svg().contains("excitation frequency"));
     assert!(resonance.chart().to_svg().contains("drive"));
+    let uncertain = ["drive=1%".parse().expect("an uncertainty")];
+    for view in [View::new(), View::new().harmonics(2)] {
+        assert!(is_refused(free.band(&view, &uncertain)));
+        assert!(is_refused(resonance.band(&view, &uncertain)));
+    }
 }
