@@ -38,7 +38,7 @@ use crate::law::{Law, Quantity, Variation};
 use crate::numeric::fourier::grading;
 use crate::system::System;
 
-/// A gap hardly opens where `H` is less.
+/// A stretch is short where `H` is less.
 const OPEN: f64 = 0.05;
 
 /// Where an interval begins or ends.
@@ -464,32 +464,26 @@ impl Skeleton {
         place
     }
 
-    /// Takes forces from another orbit where a gap hardly opens within a stretch. Its ends move as the root of `H` then, and forces at
-    /// nodes with them; as functions of the phase from the middle `c` they hardly change. Says whether there were any.
+    /// Takes forces from another orbit beside a short stretch. Its ends move as the root of `H`, and nodes on both sides with them; as functions
+    /// of the phase from its middle `c` forces hardly change there. Says whether there were any.
     pub(super) fn carry_forces(&self, known: &[f64], u: &mut [f64]) -> bool {
         let mut polynomials = Vec::new();
         let mut carried = false;
         for interval in &self.intervals {
-            let opening = [interval.from, interval.to]
-                .into_iter()
-                .find_map(|mark| self.opening(mark));
-            let Some((told, middle, square)) = opening.filter(|_| !interval.active.is_empty())
-            else {
-                continue;
-            };
-            let squares = [u, known].map(|u| told.square(u[square]));
-            if squares[0].max(squares[1]) <= 0.0 || squares[0].min(squares[1]) > OPEN {
+            let marks = [interval.from, interval.to];
+            let is_beside = marks.iter().any(|mark| self.opens(*mark, u, known));
+            if interval.active.is_empty() || self.is_within_pair(interval) || !is_beside {
                 continue;
             }
             carried = true;
-            let moved = u[middle] - known[middle];
-            let ends =
-                |u: &[f64]| [interval.from, interval.to].map(|mark| self.place(u, mark).phase);
+            let ends = |u: &[f64]| marks.map(|mark| self.place(u, mark).phase);
             let ([from, to], [a, b]) = (ends(u), ends(known));
+            let [first, last] = marks.map(|mark| self.steady(u, mark) - self.steady(known, mark));
             polynomials.resize(interval.nodes.count(), 0.0);
             for node in 0..polynomials.len() {
-                let phase = from + interval.nodes.targets[node] * (to - from) - moved;
-                let psi = (phase - a) / (b - a);
+                let target = interval.nodes.targets[node];
+                let moved = first + target * (last - first);
+                let psi = (from + target * (to - from) - moved - a) / (b - a);
                 interval
                     .nodes
                     .polynomials(psi.clamp(0.0, 1.0), &mut polynomials);
@@ -503,25 +497,33 @@ impl Skeleton {
         carried
     }
 
-    /// How the pair of switches is told between which a gap opens, where one of them is at a mark and its force goes on beyond, with the places
-    /// of its two unknowns.
-    fn opening(&self, mark: Mark) -> Option<(Opening, usize, usize)> {
-        let Cut::Switch(index) = mark.from else {
-            return None;
+    /// Phase of a mark, with the middle of pairs for both of their switches: that moves by little where `H` passes zero.
+    fn steady(&self, u: &[f64], mark: Mark) -> f64 {
+        let cut = |cut: Cut| match cut {
+            Cut::Switch(index) => match self.switches[index].told {
+                Told::Second { other } => self.begin + u[self.slot(other)],
+                Told::First { .. } | Told::Alone => self.begin + u[self.slot(index)],
+            },
+            Cut::Begin | Cut::End => self.cut(u, cut).phase,
         };
-        let (first, second) = match self.switches[index].told {
-            Told::Alone => return None,
-            Told::First { other, .. } => (index, other),
-            Told::Second { other } => (other, index),
-        };
-        let beyond = self
-            .intervals
-            .iter()
-            .find(|interval| interval.ends == Some(second))?;
-        let told = self.openings[first];
-        beyond
-            .is_free()
-            .then_some((told, self.slot(first), self.slot(second)))
+        (1.0 - mark.part) * cut(mark.from) + mark.part * cut(mark.to)
+    }
+
+    /// Whether a mark moves with a pair of switches that is short in one of two orbits, and not gone in both.
+    fn opens(&self, mark: Mark, u: &[f64], known: &[f64]) -> bool {
+        [mark.from, mark.to].into_iter().any(|cut| {
+            let Cut::Switch(index) = cut else {
+                return false;
+            };
+            let second = match self.switches[index].told {
+                Told::Alone => return false,
+                Told::First { other, .. } => other,
+                Told::Second { .. } => index,
+            };
+            let told = self.openings[index];
+            let squares = [u, known].map(|u| told.square(u[self.slot(second)]));
+            squares[0].max(squares[1]) > 0.0 && squares[0].min(squares[1]) <= OPEN
+        })
     }
 
     /// Whether an interval lies between the two switches of a pair, and nothing else does.

@@ -1,6 +1,7 @@
 //! Orbits against those of shooting, and derivatives against differences.
 
 mod affine;
+mod both_sides;
 mod grazings;
 mod jumps;
 mod moving_stiffness;
