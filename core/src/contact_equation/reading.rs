@@ -53,8 +53,8 @@ pub(super) struct Screened {
     /// What the forces of every contact on every interval left out there, and how often gaps crossed levels.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     tails: Vec<f64>,
-    /// The same of how forces change with their gaps, which multipliers are made of: where a gap is about to touch its level they may leave
-    /// out more from one orbit to the next than forces do.
+    /// The same of how forces change with their gaps and with perturbations, which multipliers are made of: where a gap is about to touch its
+    /// level they may leave out more from one orbit to the next than forces do, and where a perturbation turns fast.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     stiffness: Vec<f64>,
     switches: usize,
@@ -354,11 +354,28 @@ impl Run<'_> {
         self.left_out(intervals.map(|interval| (interval, of(interval))))
     }
 
-    /// The same of how the forces of the last pass change with their gaps, if derivatives were asked for.
+    /// The same of how the forces of the last pass change with their gaps, and of what they change by where each of the states at the beginning
+    /// is perturbed, if derivatives were asked for: perturbed motions may turn faster than the orbit does.
     fn stiffness(&self) -> Vec<f64> {
-        let intervals = self.equations.skeleton.intervals.iter();
-        let pairs = intervals.zip(&self.equations.passed);
-        self.left_out(pairs.map(|(interval, passed)| (interval, &passed.stiffness[..])))
+        let Equations {
+            skeleton,
+            passed,
+            chain,
+            ..
+        } = &self.equations;
+        let intervals = skeleton.intervals.iter();
+        let pairs = intervals.clone().zip(passed);
+        let mut left =
+            self.left_out(pairs.map(|(interval, passed)| (interval, &passed.stiffness[..])));
+        if passed.iter().any(|passed| !passed.stiffness.is_empty()) {
+            for state in 0..skeleton.order {
+                let links = intervals.clone().enumerate();
+                left.extend(self.left_out(
+                    links.map(|(link, interval)| (interval, chain.by_other(link, state))),
+                ));
+            }
+        }
+        left
     }
 
     /// Half of the shortest way between two switches that may meet where the force jumps; one if there is none.

@@ -296,6 +296,13 @@ impl Chain {
         self.links.iter().map(|link| cube(link.count())).sum()
     }
 
+    /// Less the derivatives of the unknowns of a link by one of the others: a column of `D` of (4).
+    pub(crate) fn by_other(&self, link: usize, other: usize) -> &[f64] {
+        let link = &self.links[link];
+        let count = link.count();
+        &link.through[other * count..][..count]
+    }
+
     /// Sign of the determinant of all `A`, and logarithm of its size.
     pub(crate) fn determinant(&self) -> (f64, f64) {
         self.links.iter().fold((1.0, 0.0), |(sign, size), link| {
