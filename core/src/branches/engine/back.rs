@@ -1,7 +1,7 @@
 //! What a walk does where it cannot go on as it is: it goes back to a point before, for a shorter step or for other unknowns, or it ends.
 
 use super::Engine;
-use super::seen::Seen;
+use super::seen::{Former, Seen};
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Halted, Step, Stop};
 use crate::continuation::newton::NewtonError;
@@ -43,7 +43,7 @@ impl Engine {
         true
     }
 
-    /// After a change of unknowns, of the points before it only the one to go on from is known in them.
+    /// After a change of unknowns, of the points before it only the one to go on from is known in them; of the one before that, its multipliers.
     pub(super) fn forget_others(&mut self, problem: &mut dyn BranchProblem, halted: &Halted) {
         let last = if self.refused {
             halted.previous.as_ref()
@@ -51,6 +51,20 @@ impl Engine {
             Some(&halted.point)
         };
         if self.seen.last().map(|seen| &seen.point) != last {
+            let value = last.map(CurvePoint::parameter);
+            let is_same = self.seen.last().map(|seen| seen.point.parameter()) == value;
+            if let [.., former, _] = &self.seen[..]
+                && is_same
+                && self.way > 0.0
+            {
+                self.former = Some(Former {
+                    values: former.values.clone(),
+                    pairs: former.pairs.clone(),
+                    way: self.way,
+                });
+            } else if !is_same {
+                self.former = None;
+            }
             self.seen.clear();
             let seen = last.map(|at| Seen::at(problem, at, self.falls));
             self.seen.extend(seen);

@@ -19,7 +19,7 @@
 
 use super::Engine;
 use super::meeting::Meeting;
-use super::seen::{Seen, changes, signs};
+use super::seen::{Former, Seen, changes, signs};
 use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::{inside, locate};
@@ -58,7 +58,7 @@ impl Engine {
                     continue;
                 }
                 let points = [earlier, &parts[0], &parts[parts.len() - 1]];
-                match self.dip(problem, newton, points, sought) {
+                match self.dip(problem, newton, points, None, sought) {
                     Some(Dip::Last(found)) => insert(newton, &mut parts, found),
                     // Found as the last step, when it was that.
                     Some(Dip::Before(_)) if sought.is_among(&self.divided, after - 1) => {}
@@ -72,6 +72,9 @@ impl Engine {
                     return parts;
                 }
             }
+        }
+        if let Some(former) = self.former.take() {
+            self.divide_behind(problem, newton, former, &mut parts);
         }
         self.note_divided(problem, &parts, after);
         self.divided.retain(|(place, _)| *place + 1 >= after);
@@ -87,6 +90,28 @@ impl Engine {
         parts
     }
 
+    /// Divides the first step behind a point that has other unknowns, as far as multipliers tell: what else there is to compare is of the
+    /// equations.
+    fn divide_behind(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        former: Former,
+        parts: &mut Vec<Seen>,
+    ) {
+        let way = former.way;
+        let earlier = former.before(&parts[0]);
+        for sought in of_multipliers(problem, &parts[0]) {
+            if sought.is_seen(problem, parts, &earlier) {
+                continue;
+            }
+            let points = [&earlier, &parts[0], &parts[parts.len() - 1]];
+            if let Some(Dip::Last(found)) = self.dip(problem, newton, points, Some(way), sought) {
+                insert(newton, parts, found);
+            }
+        }
+    }
+
     /// Divides parts of one step where a function passes zero twice in one of them, as far as three of their ends tell.
     fn divide_parts(
         &self,
@@ -98,7 +123,7 @@ impl Engine {
         while middle + 1 < parts.len() {
             for sought in sought_from(problem, &parts[middle]) {
                 let points = [middle - 1, middle, middle + 1].map(|place| &parts[place]);
-                let (found, place) = match self.dip(problem, newton, points, sought) {
+                let (found, place) = match self.dip(problem, newton, points, None, sought) {
                     Some(Dip::Last(found)) => (found, middle + 1),
                     Some(Dip::Before(found)) => (found, middle),
                     None => continue,
@@ -162,12 +187,14 @@ impl Engine {
         self.record_pair(problem, newton, &parts, after);
     }
 
-    /// An orbit inside one of two steps where a test function has the other sign than at all their ends.
+    /// An orbit inside one of two steps where a test function has the other sign than at all their ends. Where the first point has other
+    /// unknowns, the length of the `former` step is known and no orbit of it.
     fn dip(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         points: [&Seen; 3],
+        former: Option<f64>,
         sought: Sought,
     ) -> Option<Dip> {
         let values = points.map(|seen| sought.value(seen));
@@ -179,7 +206,8 @@ impl Engine {
         let reference = values.iter().map(|value| value.exponent);
         let reference = reference.fold(f64::NEG_INFINITY, f64::max);
         let heights = values.map(|value| sign * value.relative_to(reference));
-        let lengths = [0, 1].map(|i| distance(newton, &points[i].point, &points[i + 1].point));
+        let length = |i: usize| distance(newton, &points[i].point, &points[i + 1].point);
+        let lengths = [former.unwrap_or_else(|| length(0)), length(1)];
         let places = [0.0, lengths[0], lengths[0] + lengths[1]];
         let known = [0, 1, 2].map(|i| Height {
             place: places[i],
@@ -190,7 +218,8 @@ impl Engine {
             Sought::Test(Test::Watched(index)) => problem.noise(index).max(problem.vanishing()),
             Sought::Meeting(_) => 0.0,
         };
-        for first in [1, 0] {
+        let steps = if former.is_some() { &[1][..] } else { &[1, 0] };
+        for &first in steps {
             let descent = Descent {
                 between: [points[first], points[first + 1]],
                 from: places[first],
@@ -320,10 +349,21 @@ enum Sought {
 
 /// All that are looked at from an orbit on.
 fn sought_from(problem: &dyn BranchProblem, seen: &Seen) -> Vec<Sought> {
+    let meetings = meetings(problem, seen);
+    tests(problem).map(Sought::Test).chain(meetings).collect()
+}
+
+/// Those of them that are of multipliers.
+fn of_multipliers(problem: &dyn BranchProblem, seen: &Seen) -> Vec<Sought> {
+    let moduli = moduli(problem).map(|index| Sought::Test(Test::Watched(index)));
+    moduli.chain(meetings(problem, seen)).collect()
+}
+
+/// All pairs of multipliers beside each other.
+fn meetings(problem: &dyn BranchProblem, seen: &Seen) -> impl Iterator<Item = Sought> + use<> {
     let moduli = moduli(problem).next();
     let meetings = moduli.map(|index| Meeting::all(seen, problem.noise(index)));
-    let meetings = meetings.into_iter().flatten().map(Sought::Meeting);
-    tests(problem).map(Sought::Test).chain(meetings).collect()
+    meetings.into_iter().flatten().map(Sought::Meeting)
 }
 
 /// The moduli of multipliers among what is watched.

@@ -43,8 +43,9 @@ mod walk;
 mod zero;
 
 use explained::Bent;
+use inside::distance;
 use joint::Joint;
-use seen::{Seen, changes, is_modulus};
+use seen::{Former, Seen, changes, is_modulus};
 use touch::Gaps;
 use walk::Looked;
 pub(crate) use walk::{Places, Walk};
@@ -71,6 +72,9 @@ struct Engine {
     options: FollowOptions,
     /// The last three points, the newest last, in their present unknowns.
     seen: Vec<Seen>,
+    /// The one before these, where it has other unknowns, and how long the last step was.
+    former: Option<Former>,
+    way: f64,
     /// Whether the parameter falls, as far as the walk has come.
     falls: Option<bool>,
     /// Number of points before a step that was divided when it was the last, and for what.
@@ -232,6 +236,8 @@ impl Engine {
         Self {
             options,
             seen: Vec::new(),
+            former: None,
+            way: 0.0,
             falls: None,
             divided: Vec::new(),
             refused: false,
@@ -386,6 +392,7 @@ impl Engine {
         let earlier = self.complete(problem, step);
         let ends = [self.seen.len() - 2, self.seen.len() - 1];
         let ends = ends.map(|place| self.seen[place].clone());
+        self.way = distance(newton, step.before, step.next);
         let parts = self.parts(problem, newton, earlier.as_ref(), ends, after);
         if self.ended.is_some() {
             return None;
@@ -468,6 +475,9 @@ impl Engine {
             self.falls = seen.falls;
             seen
         });
+        if place.is_none() {
+            self.former = None;
+        }
         self.seen.clear();
         self.seen.extend(earlier.clone().into_iter().chain(ends));
         earlier

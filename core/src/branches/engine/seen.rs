@@ -20,6 +20,35 @@ pub(super) struct Seen {
     pub(super) falls: Option<bool>,
 }
 
+/// The point before the first one that is remembered, where that has other unknowns. What multipliers were there counts still.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Former {
+    pub(super) values: Vec<TestValue>,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub(super) pairs: Option<Vec<Complex<f64>>>,
+    /// How long the step from it was.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub(super) way: f64,
+}
+
+impl Former {
+    /// As a point that is as far from another one as the step was long.
+    pub(super) fn before(self, next: &Seen) -> Seen {
+        Seen {
+            point: next.point.clone(),
+            values: self.values,
+            pairs: self.pairs,
+            falls: next.falls,
+        }
+    }
+
+    /// Whether it may be one of so many test functions: it may have been read from a file.
+    pub(super) fn is_possible(&self, tests: usize) -> bool {
+        self.values.len() == tests && self.way.is_finite() && self.way > 0.0
+    }
+}
+
 impl Seen {
     /// Whether the parameter `falls` is what is known from the way to it.
     pub(super) fn at(

@@ -6,7 +6,7 @@
 use super::Engine;
 use super::explained::Bent;
 use super::joint::Joint;
-use super::seen::Seen;
+use super::seen::{Former, Seen};
 use crate::branches::problem::Test;
 use crate::branches::record::Kept;
 use crate::continuation::follow::{CurvePoint, FollowOptions, Halted};
@@ -20,6 +20,11 @@ pub(crate) struct Walk {
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     contraction: f64,
     seen: Vec<Seen>,
+    #[cfg_attr(feature = "serde", serde(default))]
+    former: Option<Former>,
+    /// How long the last step was.
+    #[cfg_attr(feature = "serde", serde(default, with = "crate::serialise"))]
+    way: f64,
     falls: Option<bool>,
     divided: Vec<(usize, Test)>,
     decided: Option<usize>,
@@ -114,6 +119,7 @@ impl Walk {
     pub(crate) fn tests(&self, tests: usize) -> bool {
         let is_one = |test: &Test| !matches!(test, Test::Watched(index) if *index >= tests);
         self.seen.iter().all(|seen| seen.values.len() == tests)
+            && self.former.iter().all(|former| former.is_possible(tests))
             && self.divided.iter().all(|(_, test)| is_one(test))
     }
 }
@@ -125,6 +131,8 @@ impl Engine {
             halted,
             contraction,
             seen: self.seen.clone(),
+            former: self.former.clone(),
+            way: self.way,
             falls: self.falls,
             divided: self.divided.clone(),
             decided: self.decided,
@@ -140,6 +148,8 @@ impl Engine {
     pub(super) fn resumed(walk: Walk, options: FollowOptions) -> (Self, Halted, f64) {
         let engine = Self {
             seen: walk.seen,
+            former: walk.former,
+            way: walk.way,
             falls: walk.falls,
             divided: walk.divided,
             decided: walk.decided,

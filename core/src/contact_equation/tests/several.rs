@@ -3,7 +3,7 @@
 
 use super::events_agree;
 use crate::system::System;
-use crate::{Branch, EventKind, FrequencyResponse};
+use crate::{Branch, ContactEquation, EventKind, FrequencyResponse, Shooting};
 
 crate::oscillator! {
     /// Two masses between stops on both sides.
@@ -33,6 +33,23 @@ crate::oscillator! {
         ddot(x) + 0.1*dot(x) + 0.5*x + s*(x - y) + stop(x - g) = drive*cos(omega*t);
         ddot(y) + 0.1*dot(y) + ky*y - s*(x - y) + s*(y - z) + stop(y - g) = 0;
         ddot(z) + 0.1*dot(z) + ky*z - s*(y - z) - stop(-z - g) = 0;
+    }
+}
+
+crate::oscillator! {
+    /// Three masses in a row, two of which are pressed together by a load.
+    Pressed(x, y, z) {
+        param coupling;
+        law hertz(gap) { gap > 0 => 44_127_054.215_448_89*gap^2.5, else => 0 }
+        let mass = 19.791_324_152_410_05;
+        let damper = 14.291_481_523_489_097;
+        let touch = hertz(x - y);
+        mass*ddot(x) + 112.915_333_831_176_87*dot(x) + coupling*(x - y) + damper*(dot(x) - dot(y)) + touch
+            = 59_689.454_869_124_55*cos(omega*t);
+        mass*ddot(y) + 26.362_669_243_668_073*dot(y) + 966_230.587_326_636_8*y + coupling*(y - x) + damper*(dot(y) - dot(x))
+            + 509_122.348_889_774_93*(y - z) + 10.209_909_257_165_892*(dot(y) - dot(z)) - touch = 0;
+        mass*ddot(z) + 39.587_489_302_240_36*dot(z) + 509_122.348_889_774_93*(z - y) + 10.209_909_257_165_892*(dot(z) - dot(y))
+            = 217_979.569_101_125_18;
     }
 }
 
@@ -129,4 +146,30 @@ fn a_step_over_several_changes_is_divided() {
         ky,
     };
     agree(&model, [1.044_78, 0.527_498]);
+}
+
+/// One pair of multipliers leaves the circle in the step in which another one comes back, as many are outside at both ends, and behind a change of
+/// nodes nothing but multipliers is known of the orbit before it.
+#[test]
+fn a_torus_that_follows_upon_another_one_behind_a_change_of_nodes_is_found() {
+    let model = Pressed {
+        coupling: 137_662.294_229_879_57,
+    };
+    for range in [[183.0, 281.0], [281.273_012_842_823_96, 183.0]] {
+        let branch = FrequencyResponse::of(&model).from(range[0]).to(range[1]);
+        let exact = branch.clone().by(Shooting::new()).run().unwrap();
+        let branch = branch.by(ContactEquation::new()).run().unwrap();
+        let tori = |branch: &Branch| -> Vec<f64> {
+            let events = branch.events.iter();
+            let tori = events.filter(|event| event.kind == EventKind::NeimarkSacker);
+            let mut values: Vec<f64> = tori.map(|event| event.point.value).collect();
+            values.sort_by(f64::total_cmp);
+            values
+        };
+        let (found, exact) = (tori(&branch), tori(&exact));
+        assert_eq!(found.len(), 6);
+        for (found, exact) in found.iter().zip(&exact) {
+            assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact}");
+        }
+    }
 }
