@@ -373,7 +373,10 @@ fn keep_touch(run: &mut Run<'_>, touch: &Touch, at: &CurvePoint) {
     let Some(mut read) = run.read_event(at) else {
         return;
     };
-    let mut error = touch.error + SAFETY * read.shift.abs();
+    // The extreme is known as well as the orbit.
+    let orbit = read.point.error.filter(|error| error.is_finite());
+    let height = orbit.unwrap_or(0.0) * touch.rate;
+    let mut error = touch.error + SAFETY * (read.shift.abs() + height);
     run.equations.compute(&at.u, false);
     let mut u = at.u.clone();
     // A step may lead over a stretch that begins and ends in it, and a touch beside another one may be found before it is watched: equations

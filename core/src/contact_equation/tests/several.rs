@@ -53,6 +53,21 @@ crate::oscillator! {
     }
 }
 
+crate::oscillator! {
+    /// Two masses in contact, the first of which meets a stop whose stiffness pulsates.
+    Pulsating(x, y) {
+        param coupling;
+        law stop(gap) { gap > 0 => 1_018_479_623.466_673_9*gap, else => 0 }
+        law hertz(gap) { gap > 0 => 14_165_405_490_057.99*gap^(2.744_522_900_391_128), else => 0 }
+        let mass = 78.027_520_101_305_67;
+        let damper = 2075.114_242_913_595_3;
+        mass*ddot(x) + 24_330.136_445_510_536*dot(x) + 64_242_340.612_871_826*x + coupling*(x - y) + damper*(dot(x) - dot(y))
+            + stop(x - y) + (1 + 0.155_334_833_060_413_46*cos(2*omega*t))*hertz(x) = 0;
+        mass*ddot(y) + 2477.952_853_666_095*dot(y) + 85_128_677.941_766_87*y + coupling*(y - x) + damper*(dot(y) - dot(x))
+            - stop(x - y) = 22_931.553_603_450_797*cos(omega*t) + 40_153.787_219_314_094;
+    }
+}
+
 fn row([k, c, s, g, drive, ky]: [f64; 6]) -> Row {
     Row {
         k,
@@ -170,6 +185,36 @@ fn a_torus_that_follows_upon_another_one_behind_a_change_of_nodes_is_found() {
         assert_eq!(found.len(), 6);
         for (found, exact) in found.iter().zip(&exact) {
             assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact}");
+        }
+    }
+}
+
+/// What nodes leave out of the height of an extreme moves the touch by many times what they leave out of the branch.
+#[test]
+fn errors_of_touches_are_those_of_their_extremes() {
+    let model = Pulsating {
+        coupling: 96_596_145.618_151_8,
+    };
+    for range in [
+        [908.653_767_320_712_2, 598.729_688_281_939_6],
+        [598.729_688_281_939_6, 908.653_767_320_712_2],
+    ] {
+        let branch = FrequencyResponse::of(&model).from(range[0]).to(range[1]);
+        let exact = branch
+            .clone()
+            .by(Shooting::new().tolerance(1e-12))
+            .run()
+            .unwrap();
+        let branch = branch.by(ContactEquation::new()).run().unwrap();
+        assert_eq!(branch.events.len(), 2);
+        for (found, exact) in branch.events.iter().zip(&exact.events) {
+            let apart = (found.point.value - exact.point.value).abs();
+            assert!(
+                apart < found.error + exact.error,
+                "{apart:e} {:e}",
+                found.error
+            );
+            assert!(found.error < 1e-9 * found.point.value);
         }
     }
 }
