@@ -261,17 +261,18 @@ fn a_branch_is_resumed_by_what_followed_it() {
 }
 
 hertzian::oscillator! {
-    /// The contact equation is lost where the gap touches zero, at few digits; the law of what is far away chooses it.
+    /// The contact equation is lost where the gap touches zero, at which the stiffness of a symmetric motion has no bound on both sides; the law
+    /// of what is far away chooses it.
     Touching(x) {
-        law spring(gap) { gap > 0 => gap^1.8, else => -(-gap)^1.8 }
+        law spring(gap) { gap > 0 => gap^0.6, else => -(-gap)^0.6 }
         law far(gap) { gap > 0 => gap, else => 0 }
-        ddot(x) + 0.02*dot(x) + spring(x) + far(x - 100) = 0.3*cos(omega*t) + 1;
+        ddot(x) + 0.2*dot(x) + spring(x) + far(x - 100) = 0.1*cos(omega*t);
     }
 }
 
 fn touching() -> FrequencyResponse {
     let request = FrequencyResponse::of(&Touching {}).tolerance(1e-4);
-    request.from(0.6).to(1.6)
+    request.from(1.6).to(0.6)
 }
 
 /// Stopped when so many points were seen, by the method that is tried first or by the one that is tried then.
@@ -319,7 +320,7 @@ fn a_branch_that_is_resumed_has_the_balance_to_fall_back_on() {
     }
     // What is followed beyond its range is followed anew where it is lost there.
     let short = request.clone().to(1.0).run().expect("a branch");
-    let longer = short.resume().to(1.6).run().expect("a branch");
+    let longer = short.resume().to(0.6).run().expect("a branch");
     assert_eq!(longer.stopped, Stop::ReachedEnd);
     let [longer, whole] = [longer, whole].map(|branch| branch.folds().count());
     assert_eq!(longer, whole);
