@@ -449,6 +449,9 @@ impl Equations {
     /// The largest residual.
     fn defect(&mut self, u: &[f64]) -> f64 {
         self.compute(u, false);
+        if self.failed {
+            return f64::INFINITY;
+        }
         self.residual.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
     }
 }

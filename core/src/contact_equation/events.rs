@@ -20,6 +20,7 @@ use super::equations::Equations;
 use super::fits::Fits;
 use super::integrals::add;
 use super::method::VANISHED;
+use super::reading::Screened;
 use super::run::Run;
 use crate::branches::moduli::multipliers;
 use crate::branches::point::{Event, Point};
@@ -373,9 +374,14 @@ fn keep_touch(run: &mut Run<'_>, touch: &Touch, at: &CurvePoint) {
     let Some(mut read) = run.read_event(at) else {
         return;
     };
-    // The extreme is known as well as the orbit.
-    let orbit = read.point.error.filter(|error| error.is_finite());
-    let height = orbit.unwrap_or(0.0) * touch.rate;
+    // The extreme may be off by as much as the motion, and what is varied by that times how it changes with the extreme.
+    let known = read.point.error.is_some_and(f64::is_finite);
+    let apart = run
+        .screened
+        .as_ref()
+        .filter(|_| known)
+        .map_or(0.0, Screened::apart);
+    let height = apart / touch.extreme.size * touch.rate;
     let mut error = touch.error + SAFETY * (read.shift.abs() + height);
     run.equations.compute(&at.u, false);
     let mut u = at.u.clone();

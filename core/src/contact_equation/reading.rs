@@ -84,6 +84,11 @@ pub(super) struct Screened {
 }
 
 impl Screened {
+    /// How far the orbit is from the finer one, at any phase.
+    pub(super) fn apart(&self) -> f64 {
+        self.apart
+    }
+
     /// Whether its numbers can be what they say: they may have been read from a file.
     pub(super) fn is_possible(&self) -> bool {
         let Self {
@@ -354,28 +359,43 @@ impl Run<'_> {
         self.left_out(intervals.map(|interval| (interval, of(interval))))
     }
 
-    /// The same of how the forces of the last pass change with their gaps, and of what they change by where each of the states at the beginning
-    /// is perturbed, if derivatives were asked for: perturbed motions may turn faster than the orbit does.
+    /// The same of how the forces of the last pass change with their gaps, if derivatives were asked for, and of [`Run::perturbed`].
     fn stiffness(&self) -> Vec<f64> {
         let Equations {
-            skeleton,
-            passed,
-            chain,
-            ..
+            skeleton, passed, ..
         } = &self.equations;
-        let intervals = skeleton.intervals.iter();
-        let pairs = intervals.clone().zip(passed);
+        let pairs = skeleton.intervals.iter().zip(passed);
         let mut left =
             self.left_out(pairs.map(|(interval, passed)| (interval, &passed.stiffness[..])));
         if passed.iter().any(|passed| !passed.stiffness.is_empty()) {
-            for state in 0..skeleton.order {
-                let links = intervals.clone().enumerate();
-                left.extend(self.left_out(
-                    links.map(|(link, interval)| (interval, chain.by_other(link, state))),
-                ));
-            }
+            left.append(&mut self.perturbed());
         }
         left
+    }
+
+    /// What nodes leave out of the forces of perturbed motions, the most of those in which one state at the beginning is perturbed. These may
+    /// turn faster than the orbit does. The forces are columns of `D`, (4) of [`chain`](crate::continuation::chain).
+    fn perturbed(&self) -> Vec<f64> {
+        let Equations {
+            skeleton, chain, ..
+        } = &self.equations;
+        let (mut tails, mut largest) = (Vec::new(), 0.0_f64);
+        for (link, interval) in skeleton.intervals.iter().enumerate() {
+            let n = interval.nodes.count();
+            for (place, active) in interval.active.iter().enumerate() {
+                let size = self.equations.values.contacts[active.contact].input.size();
+                let mut most = 0.0_f64;
+                for state in 0..skeleton.order {
+                    let unit = size * self.equations.unit(state);
+                    let forces = &chain.by_other(link, state)[place * n..][..n];
+                    most = most.max(unit * interval.nodes.tail(forces));
+                    largest = forces.iter().fold(largest, |m, x| m.max(unit * x.abs()));
+                }
+                tails.push(most);
+            }
+        }
+        raise(&mut tails, largest);
+        tails
     }
 
     /// Half of the shortest way between two switches that may meet where the force jumps; one if there is none.
@@ -406,10 +426,7 @@ impl Run<'_> {
                 largest = values.iter().fold(largest, |m, x| m.max(size * x.abs()));
             }
         }
-        let least = (ROUNDED * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
-        for tail in &mut tails {
-            *tail = tail.max(least);
-        }
+        raise(&mut tails, largest);
         tails
     }
 
@@ -430,6 +447,14 @@ impl Run<'_> {
         }
         let shift = step[step.len() - 1];
         Some(Finer { u, shift })
+    }
+}
+
+/// What is less than the rounding of the largest value is as large as that.
+fn raise(tails: &mut [f64], largest: f64) {
+    let least = (ROUNDED * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
+    for tail in tails {
+        *tail = tail.max(least);
     }
 }
 

@@ -105,11 +105,6 @@ impl Interval {
         self.active.first().map_or(0, |active| active.first)
     }
 
-    /// No contact has a force on it.
-    fn is_free(&self) -> bool {
-        self.active.is_empty() && self.configuration.is_none()
-    }
-
     /// Half of the way from its beginning to its end.
     fn middle(&self) -> Mark {
         // Panels of one way have the same ends; a whole one has its own.
@@ -471,14 +466,20 @@ impl Skeleton {
         let mut carried = false;
         for interval in &self.intervals {
             let marks = [interval.from, interval.to];
-            let is_beside = marks.iter().any(|mark| self.opens(*mark, u, known));
+            let is_beside = marks.iter().any(|mark| {
+                let mut cuts = [mark.from, mark.to].into_iter();
+                cuts.any(|cut| self.opens(cut, u, known))
+            });
             if interval.active.is_empty() || self.is_within_pair(interval) || !is_beside {
                 continue;
             }
-            carried = true;
             let ends = |u: &[f64]| marks.map(|mark| self.place(u, mark).phase);
             let ([from, to], [a, b]) = (ends(u), ends(known));
-            let [first, last] = marks.map(|mark| self.steady(u, mark) - self.steady(known, mark));
+            if b <= a {
+                continue;
+            }
+            carried = true;
+            let [first, last] = marks.map(|mark| self.moved(mark, u, known));
             polynomials.resize(interval.nodes.count(), 0.0);
             for node in 0..polynomials.len() {
                 let target = interval.nodes.targets[node];
@@ -497,33 +498,34 @@ impl Skeleton {
         carried
     }
 
-    /// Phase of a mark, with the middle of pairs for both of their switches: that moves by little where `H` passes zero.
-    fn steady(&self, u: &[f64], mark: Mark) -> f64 {
+    /// How far a mark has moved between two orbits, of a short pair its middle: that moves by little where `H` passes zero.
+    fn moved(&self, mark: Mark, u: &[f64], known: &[f64]) -> f64 {
         let cut = |cut: Cut| match cut {
-            Cut::Switch(index) => match self.switches[index].told {
-                Told::Second { other } => self.begin + u[self.slot(other)],
-                Told::First { .. } | Told::Alone => self.begin + u[self.slot(index)],
-            },
-            Cut::Begin | Cut::End => self.cut(u, cut).phase,
+            Cut::Switch(index) if self.opens(cut, u, known) => {
+                let middle = match self.switches[index].told {
+                    Told::Second { other } => self.slot(other),
+                    Told::First { .. } | Told::Alone => self.slot(index),
+                };
+                u[middle] - known[middle]
+            }
+            _ => self.cut(u, cut).phase - self.cut(known, cut).phase,
         };
         (1.0 - mark.part) * cut(mark.from) + mark.part * cut(mark.to)
     }
 
-    /// Whether a mark moves with a pair of switches that is short in one of two orbits, and not gone in both.
-    fn opens(&self, mark: Mark, u: &[f64], known: &[f64]) -> bool {
-        [mark.from, mark.to].into_iter().any(|cut| {
-            let Cut::Switch(index) = cut else {
-                return false;
-            };
-            let second = match self.switches[index].told {
-                Told::Alone => return false,
-                Told::First { other, .. } => other,
-                Told::Second { .. } => index,
-            };
-            let told = self.openings[index];
-            let squares = [u, known].map(|u| told.square(u[self.slot(second)]));
-            squares[0].max(squares[1]) > 0.0 && squares[0].min(squares[1]) <= OPEN
-        })
+    /// Whether a cut is at one of a pair of switches with a short way between them in one of two orbits at least, which has not gone in both.
+    fn opens(&self, cut: Cut, u: &[f64], known: &[f64]) -> bool {
+        let Cut::Switch(index) = cut else {
+            return false;
+        };
+        let second = match self.switches[index].told {
+            Told::Alone => return false,
+            Told::First { other, .. } => other,
+            Told::Second { .. } => index,
+        };
+        let told = self.openings[index];
+        let squares = [u, known].map(|u| told.square(u[self.slot(second)]));
+        squares[0].max(squares[1]) > 0.0 && squares[0].min(squares[1]) <= OPEN
     }
 
     /// Whether an interval lies between the two switches of a pair, and nothing else does.

@@ -53,18 +53,16 @@ impl Engine {
         if self.seen.last().map(|seen| &seen.point) != last {
             let value = last.map(CurvePoint::parameter);
             let is_same = self.seen.last().map(|seen| seen.point.parameter()) == value;
-            if let [.., former, _] = &self.seen[..]
-                && is_same
-                && self.way > 0.0
-            {
-                self.former = Some(Former {
+            self.former = match &self.seen[..] {
+                [.., former, _] if is_same && self.way > 0.0 => Some(Former {
                     values: former.values.clone(),
                     pairs: former.pairs.clone(),
                     way: self.way,
-                });
-            } else if !is_same {
-                self.former = None;
-            }
+                }),
+                // It was changed before.
+                [_] if is_same => self.former.take(),
+                _ => None,
+            };
             self.seen.clear();
             let seen = last.map(|at| Seen::at(problem, at, self.falls));
             self.seen.extend(seen);

@@ -72,8 +72,9 @@ struct Engine {
     options: FollowOptions,
     /// The last three points, the newest last, in their present unknowns.
     seen: Vec<Seen>,
-    /// The one before these, where it has other unknowns, and how long the last step was.
+    /// The one before these, where it has other unknowns.
     former: Option<Former>,
+    /// How long the last step was.
     way: f64,
     /// Whether the parameter falls, as far as the walk has come.
     falls: Option<bool>,
@@ -266,7 +267,13 @@ impl Engine {
         seen: &Visit<'_>,
     ) -> Continue {
         match seen {
-            Visit::Again(_) if !self.refused => Continue::Continue(()),
+            Visit::Again(at) if !self.refused => {
+                // It was corrected in its new unknowns.
+                if let [seen] = &mut self.seen[..] {
+                    *seen = Seen::at(problem, at, seen.falls);
+                }
+                Continue::Continue(())
+            }
             Visit::Point(at) if self.corner_before(problem, at) || self.leaps(problem, at) => {
                 Continue::Break(Halt::Resize)
             }

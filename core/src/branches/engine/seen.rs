@@ -27,7 +27,7 @@ pub(super) struct Former {
     pub(super) values: Vec<TestValue>,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) pairs: Option<Vec<Complex<f64>>>,
-    /// How long the step from it was.
+    /// How long the step from it was, in the norm of its unknowns: that of others is another one by less than second differences are trusted to.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) way: f64,
 }

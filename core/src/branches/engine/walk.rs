@@ -109,6 +109,8 @@ impl Walk {
             && self.joint.as_ref().is_none_or(Joint::is_possible)
             && self.halted.is_possible()
             && self.contraction.is_finite()
+            && self.way.is_finite()
+            && self.way >= 0.0
             && self.kept.points > 0
             && self
                 .decided

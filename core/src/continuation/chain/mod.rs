@@ -296,7 +296,7 @@ impl Chain {
         self.links.iter().map(|link| cube(link.count())).sum()
     }
 
-    /// Less the derivatives of the unknowns of a link by one of the others: a column of `D` of (4).
+    /// The derivatives of the unknowns of a link by one of the others, with the other sign: a column of `D` of (4), once all links were passed.
     pub(crate) fn by_other(&self, link: usize, other: usize) -> &[f64] {
         let link = &self.links[link];
         let count = link.count();

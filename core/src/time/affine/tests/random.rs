@@ -82,6 +82,8 @@ oscillator! {
 
 /// A motion that comes to rest is compared over this part of the way.
 const RESTS: f64 = 0.5;
+/// Beyond this growth it is not allowed for.
+const GROWN: f64 = 1e5;
 /// Parts of a motion from the beginnings of which perturbations are followed to its end.
 const PARTS: usize = 64;
 
@@ -144,14 +146,14 @@ fn compare_to(system: &dyn System, omega: f64, start: &[f64], to: f64, step: f64
     for found in [&state, &plain] {
         let error = distance(found, &exact);
         assert!(
-            error < 1e-11 * growth,
+            error < 1e-11 * growth.min(GROWN),
             "{error:e} {growth} {found:?} {exact:?}"
         );
     }
 }
 
-/// What a perturbation that is made anywhere on the way has grown to at its end, at most: rounding errors are made everywhere, and in short
-/// bounces, whose speeds change as the roots of heights, those of positions grow at once.
+/// What a perturbation that is made at one of some places on the way has grown to at its end, at most: rounding errors are made everywhere, and in
+/// short bounces, whose speeds change as the roots of heights, those of positions grow at once.
 fn growth(flow: &mut dyn Flow, from: f64, to: f64, start: &[f64]) -> f64 {
     let order = start.len();
     let mut state = start.to_vec();
