@@ -71,7 +71,9 @@ pub fn main() -> Result<(), Error> {
 
 /// Largest vibration, folds, and where on the branch contact is lost first.
 fn describe(sigma: f64, branch: &Branch) {
-    let sizes = branch.points.iter().map(|p| (p.peak_to_peak(), p.value));
+    let folds = branch.folds().map(|fold| &fold.point);
+    let sizes = branch.points.iter().chain(folds);
+    let sizes = sizes.map(|p| (p.peak_to_peak(), p.value));
     let (peak, at) = sizes.fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a });
     let jumps = branch
         .folds()

@@ -64,6 +64,7 @@ impl Engine {
                 _ => None,
             };
             self.seen.clear();
+            self.looked = None;
             let seen = last.map(|at| Seen::at(problem, at, self.falls));
             self.seen.extend(seen);
         }
