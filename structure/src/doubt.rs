@@ -30,6 +30,8 @@ const DYNAMIC: f64 = 2.0;
 pub(crate) struct Doubt {
     /// By which part ratios of damping differ among modes that are left out.
     spread: f64,
+    /// What stands in square brackets in (1), where there is something.
+    inner: Option<DMatrix<f64>>,
     /// (1) of each harmonic from the first one on, of what is read along all directions by what is driven.
     coupled: Vec<DMatrix<f64>>,
 }
@@ -50,8 +52,51 @@ impl Doubt {
             _ => 0.0,
         };
         let given = matches!(structure.damping, Damping::Matrix(_));
-        let coupled = coupled(reduced, given, speeds, base);
-        Self { spread, coupled }
+        let inner = inner(reduced, given, speeds);
+        let coupled = inner
+            .as_ref()
+            .map(|inner| coupled(reduced, inner, speeds, base));
+        Self {
+            spread,
+            coupled: coupled.unwrap_or_default(),
+            inner,
+        }
+    }
+
+    /// Whether all is known.
+    pub(crate) fn is_none(&self) -> bool {
+        self.spread == 0.0 && self.inner.is_none()
+    }
+
+    /// How much a Floquet mode changes its exponent at most, by what is not known of the damping of its motion at a frequency: the harmonics of
+    /// positions of all vectors, and of the adjoint motion.
+    pub(crate) fn of_exponent(
+        &self,
+        reduced: &Reduced,
+        frequency: f64,
+        positions: &[Complex<f64>],
+        adjoint: &[Complex<f64>],
+    ) -> f64 {
+        let m = reduced.vectors();
+        let of_vector = |i: usize| {
+            let rate = frequency.abs() * positions[i].norm();
+            self.spread * reduced.damping[i * m + i].abs() * rate * adjoint[i].norm()
+        };
+        let by_ratios: f64 = (reduced.modes..m).map(of_vector).sum();
+        let by_coupling = self.inner.as_ref().map_or(0.0, |inner| {
+            let pairs = (0..m).flat_map(|i| (0..m).map(move |j| (i, j)));
+            let terms = pairs.map(|(i, j)| adjoint[i] * positions[j] * inner[(i, j)]);
+            let beyond = reduced.squares.get(reduced.modes).copied().unwrap_or(0.0);
+            // Near the lowest frequency of what is left out it answers by more.
+            let answers = (1.0 / (1.0 - frequency * frequency / beyond)).abs();
+            let answers = if answers.is_nan() {
+                DYNAMIC
+            } else {
+                answers.max(DYNAMIC)
+            };
+            answers * frequency * frequency * terms.sum::<Complex<f64>>().norm()
+        });
+        by_ratios + by_coupling
     }
 
     /// Of the compliance between a direction that is read and one that is driven.
@@ -116,9 +161,10 @@ pub(crate) fn dynamic(
     })
 }
 
-fn coupled(reduced: &Reduced, given: bool, speeds: &[f64], base: f64) -> Vec<DMatrix<f64>> {
+/// What the vectors are coupled by.
+fn inner(reduced: &Reduced, given: bool, speeds: &[f64]) -> Option<DMatrix<f64>> {
     if reduced.coupling.is_empty() {
-        return Vec::new();
+        return None;
     }
     let m = reduced.vectors();
     // Of the transposed matrices gyroscopic ones have the other sign.
@@ -131,6 +177,16 @@ fn coupled(reduced: &Reduced, given: bool, speeds: &[f64], base: f64) -> Vec<DMa
         let by = factors[place / count][0] * factors[place % count][1];
         inner += by * DMatrix::from_row_slice(m, m, block);
     }
+    Some(inner)
+}
+
+fn coupled(
+    reduced: &Reduced,
+    inner: &DMatrix<f64>,
+    speeds: &[f64],
+    base: f64,
+) -> Vec<DMatrix<f64>> {
+    let m = reduced.vectors();
     let inner = inner.map(|x| Complex::new(x, 0.0));
     let damping = damping(reduced, speeds);
     let columns = reduced

@@ -24,10 +24,9 @@ use hertzian::Complex;
 use hertzian::structure::DMatrix;
 
 use crate::doubt::{self, COUPLED};
+use crate::gaps::{Slopes, TIMES};
 use crate::reduced::Reduced;
 
-/// Times of the period.
-pub(crate) const TIMES: usize = 128;
 /// Times at which some contact has a slope, at most: beyond, every second, third and so on is left out.
 const UNKNOWNS: usize = 600;
 /// Harmonics of less than this part of the largest do not matter.
@@ -35,18 +34,29 @@ const NOTHING: f64 = 1e-4;
 /// A frequency of zero is this part of the excitation's highest one where nothing holds the structure but its contacts.
 const SLOW: f64 = 1e-4;
 
-/// Slopes of the law of a contact at all times.
-#[derive(Debug, Clone)]
-pub(crate) struct Slopes {
-    pub(crate) by_gap: Vec<f64>,
-    pub(crate) by_rate: Vec<f64>,
-}
-
 /// What is read: a row of the reduced structure, and its derivatives by time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Read {
     pub(crate) row: usize,
     pub(crate) derivatives: i32,
+}
+
+/// A harmonic of the amplitude `off` by which the gap of a contact is off.
+#[derive(Debug, Clone, Copy)]
+struct Source {
+    contact: usize,
+    harmonic: usize,
+    off: f64,
+}
+
+impl Source {
+    /// Its cosine, or sine, and the rate of that.
+    fn at(self, time: usize, part: usize, base: f64) -> [f64; 2] {
+        let phase = TAU * ((self.harmonic * time) % TIMES) as f64 / TIMES as f64;
+        let phase = phase - TAU / 4.0 * part as f64;
+        let rate = -(self.harmonic as f64) * base * phase.sin();
+        [self.off * phase.cos(), self.off * rate]
+    }
 }
 
 /// An orbit of a reduced structure, and what its contacts do there.
@@ -222,15 +232,59 @@ impl<'r> Feedback<'r> {
     /// The largest change of everything that is read, where gaps are off by these amplitudes of each harmonic; not a number where forces are
     /// not determined.
     pub(crate) fn changes(&self, read: &[Read], off: &[Vec<f64>]) -> Vec<f64> {
-        let n = self.unknowns.len();
-        let Some(matrix) = &self.matrix else {
+        if self.matrix.is_none() {
             return vec![0.0; read.len()];
-        };
-        let (count, forces) = self.driven(off);
-        let every = self.every();
-        let Some(mut forces) = matrix.clone().lu().solve(&forces) else {
+        }
+        let Some(changes) = self.answered(read, &self.sources(off)) else {
             return vec![f64::NAN; read.len()];
         };
+        let largest = |changes: &DMatrix<f64>| {
+            let of = |source: usize| {
+                let both = (0..TIMES)
+                    .map(|time| changes[(time, 2 * source)].hypot(changes[(time, 2 * source + 1)]));
+                both.fold(0.0, f64::max)
+            };
+            (0..changes.ncols() / 2).map(of).sum()
+        };
+        changes.iter().map(largest).collect()
+    }
+
+    /// By how much gaps, and then rates, of all contacts are off over time: two columns for cosine and sine of each harmonic by which one of them
+    /// is off without what contacts make of that. None where forces are not determined.
+    pub(crate) fn gaps_off(&self, off: &[Vec<f64>]) -> Option<[Vec<DMatrix<f64>>; 2]> {
+        let sources = self.sources(off);
+        let contacts = self.slopes.len();
+        let of = |derivatives: i32| {
+            let read = (0..contacts).map(|contact| Read {
+                row: 2 * contact,
+                derivatives,
+            });
+            let answered = self.answered(&read.collect::<Vec<_>>(), &sources)?;
+            let own = |contact: usize, time: usize, column: usize| {
+                let source = &sources[column / 2];
+                let [gap, rate] = source.at(time, column % 2, self.base);
+                let by = if derivatives == 0 { gap } else { rate };
+                if source.contact == contact { by } else { 0.0 }
+            };
+            let answered = answered.into_iter().enumerate();
+            let all = answered.map(|(contact, answered)| {
+                DMatrix::from_fn(TIMES, 2 * sources.len(), |time, column| {
+                    own(contact, time, column) - answered[(time, column)]
+                })
+            });
+            Some(all.collect())
+        };
+        Some([of(0)?, of(1)?])
+    }
+
+    /// What is read of the reduced structure for the forces that contacts change by, over time, a column for cosine and sine of each source.
+    fn answered(&self, read: &[Read], sources: &[Source]) -> Option<Vec<DMatrix<f64>>> {
+        let n = self.unknowns.len();
+        let Some(matrix) = &self.matrix else {
+            return Some(vec![DMatrix::zeros(TIMES, 2 * sources.len()); read.len()]);
+        };
+        let every = self.every();
+        let mut forces = matrix.clone().lu().solve(&self.driven(sources))?;
         if self.at_fold
             && let Some(along) = along_branch(matrix)
         {
@@ -248,42 +302,39 @@ impl<'r> Feedback<'r> {
                 }
             }
         }
-        let largest = |whole: &DMatrix<f64>| {
-            let changes = whole * &forces;
-            let of = |source: usize| {
-                let both = (0..TIMES)
-                    .map(|time| changes[(time, 2 * source)].hypot(changes[(time, 2 * source + 1)]));
-                both.fold(0.0, f64::max)
-            };
-            (0..count).map(of).sum()
-        };
-        whole.iter().map(largest).collect()
+        Some(whole.iter().map(|whole| whole * &forces).collect())
     }
 
-    /// The right-hand side of (1) for cosine and sine of every harmonic that gaps are off by at each contact, and how many there are of both.
-    fn driven(&self, off: &[Vec<f64>]) -> (usize, DMatrix<f64>) {
+    /// Every harmonic that a gap is off by, where it matters.
+    fn sources(&self, off: &[Vec<f64>]) -> Vec<Source> {
         let largest = off.iter().flatten().fold(0.0, |most: f64, x| most.max(*x));
-        let sources: Vec<(usize, usize, f64)> = (off.iter().enumerate())
-            .flat_map(|(contact, off)| {
-                let harmonics = off.iter().enumerate();
-                let matter = harmonics.filter(|(_, off)| **off > NOTHING * largest);
-                matter.map(move |(harmonic, off)| (contact, harmonic, *off))
+        let all = off.iter().enumerate();
+        let all = all.flat_map(|(contact, off)| {
+            let harmonics = off.iter().enumerate();
+            let matter = harmonics.filter(|(_, off)| **off > NOTHING * largest);
+            matter.map(move |(harmonic, off)| Source {
+                contact,
+                harmonic,
+                off: *off,
             })
-            .collect();
-        let slope = |(contact, time): (usize, usize), harmonic: usize, quarter: f64| {
-            let phase = TAU * ((harmonic * time) % TIMES) as f64 / TIMES as f64 - quarter;
-            let rate = -(harmonic as f64) * self.base * phase.sin();
-            let slopes = &self.slopes[contact];
-            slopes.by_gap[time] * phase.cos() + slopes.by_rate[time] * rate
-        };
+        });
+        all.collect()
+    }
+
+    /// The right-hand side of (1) for cosine and sine of every source.
+    fn driven(&self, sources: &[Source]) -> DMatrix<f64> {
         let mut forces = DMatrix::zeros(self.unknowns.len(), 2 * sources.len());
-        for (index, &(contact, harmonic, off)) in sources.iter().enumerate() {
-            for (row, &place) in self.of_contact(contact) {
-                forces[(row, 2 * index)] = off * slope(place, harmonic, 0.0);
-                forces[(row, 2 * index + 1)] = off * slope(place, harmonic, TAU / 4.0);
+        for (index, source) in sources.iter().enumerate() {
+            for (row, &(contact, time)) in self.of_contact(source.contact) {
+                let slopes = &self.slopes[contact];
+                for part in 0..2 {
+                    let [gap, rate] = source.at(time, part, self.base);
+                    forces[(row, 2 * index + part)] =
+                        slopes.by_gap[time] * gap + slopes.by_rate[time] * rate;
+                }
             }
         }
-        (sources.len(), forces)
+        forces
     }
 
     /// How many times an unknown stands for.

@@ -43,13 +43,18 @@ pub mod market;
 pub mod npy;
 
 mod accuracy;
+mod at_orbit;
 mod description;
 mod doubt;
 mod error;
+mod exponent;
 mod factor;
 mod feedback;
+mod floquet;
+mod gaps;
 mod lanczos;
 mod matrix;
+mod multipliers;
 mod reduced;
 mod reduction;
 
@@ -60,5 +65,6 @@ pub use description::{
 };
 pub use error::StructureError;
 pub use matrix::{MatrixError, SparseMatrix};
+pub use multipliers::ReducedStability;
 pub use reduced::{Reduced, ReducedError};
 pub use reduction::{Reduction, ReductionError};

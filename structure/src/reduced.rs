@@ -9,11 +9,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::description::{Damping, LoadKind, OutputKind, SparseStructure};
 use crate::doubt::Doubt;
-use crate::feedback::TIMES;
+use crate::gaps::TIMES;
 
 /// The last harmonics of a force that say how large those beyond are, and how many of these there are at most.
 const LAST: usize = 4;
 const MOST: usize = 10_000;
+/// Frequencies that differ by this part are one.
+const SAME: f64 = 1e-9;
 
 /// A structure by few vectors: modes, and static responses besides them.
 ///
@@ -217,6 +219,17 @@ impl Reduced {
             (Some(c), None) | (None, Some(c)) => error(c),
             (None, None) => 0.0,
         }
+    }
+
+    /// The same with its sign where it was measured at this very frequency.
+    pub(crate) fn measured_error(&self, read: usize, driven: usize, frequency: f64) -> Option<f64> {
+        let columns = self.checked.first()?.errors.len() / self.rows.len().max(1);
+        let near = |c: &&Checked| (c.frequency - frequency).abs() <= SAME * frequency;
+        let after = self
+            .checked
+            .partition_point(|c| c.frequency < frequency * (1.0 - SAME));
+        let found = self.checked.get(after).filter(near)?;
+        Some(found.errors[read * columns + driven])
     }
 
     /// The error that the reduction makes of the harmonics of what is read along a direction, to first order: the error of the compliance

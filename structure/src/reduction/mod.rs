@@ -44,8 +44,6 @@ const MULTIPLES: [f64; 8] = [0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 const ASKED: usize = 6;
 /// Of structures with more coordinates (2) is not measured at the harmonics of each orbit.
 const SMALL: usize = 300;
-/// Harmonics of an orbit at which it is.
-const HARMONICS: usize = 32;
 
 /// How a structure is reduced.
 #[derive(Debug, Clone)]
@@ -175,9 +173,13 @@ impl Reduction {
 }
 
 impl Reduced {
-    /// The same with (2) measured at harmonics of a base frequency too: between modes that are not among the vectors it changes by orders of
-    /// magnitude. Of a large structure it stays interpolated.
-    pub(crate) fn measured(&self, structure: &SparseStructure, base: f64) -> Self {
+    /// The same with (2) measured at these frequencies too: between modes that are not among the vectors it changes by orders of magnitude. Of
+    /// a large structure it stays interpolated.
+    pub(crate) fn measured(
+        &self,
+        structure: &SparseStructure,
+        frequencies: impl IntoIterator<Item = f64>,
+    ) -> Self {
         let mut measured = self.clone();
         if self.coordinates > SMALL || self.vectors() == self.coordinates {
             return measured;
@@ -190,8 +192,8 @@ impl Reduced {
         let Ok(work) = Work::new(&options, structure) else {
             return measured;
         };
-        let harmonics = (1..=HARMONICS).map(|k| k as f64 * base / self.to());
-        let checked = harmonics.filter_map(|multiple| work.checked(self, multiple).ok());
+        let multiples = frequencies.into_iter().map(|s| s / self.to());
+        let checked = multiples.filter_map(|multiple| work.checked(self, multiple).ok());
         measured.checked.extend(checked);
         let of = |c: &Checked| c.frequency;
         measured.checked.sort_by(|a, b| of(a).total_cmp(&of(b)));

@@ -1,6 +1,6 @@
 //! A structure by fewer modes than all, against the whole one.
 
-use hertzian::{Branch, Point, Stability};
+use hertzian::{Branch, Point, Verdict};
 use hertzian_structure::{Reduced, Reduction};
 
 use super::judge::{Asked, Case, Judged, ORBITS, Whole, of_one, said};
@@ -79,7 +79,7 @@ impl Case {
             said(few),
             point.value
         );
-        self.verdict_of_reduced(&name, &truth, &point.stability);
+        self.stability_of_reduced(&name, &truth, reduced, (few, point));
         let errors = match reduced.errors_at(&self.sparse, few, point) {
             Ok(errors) => errors,
             Err(error) => return self.find(Kind::Refused, format!("{name}: {error}")),
@@ -103,25 +103,70 @@ impl Case {
         self.ratio(("reduced orbits", Kind::Reduced), &name, of);
     }
 
-    fn verdict_of_reduced(&mut self, name: &str, truth: &Truth, stability: &Stability) {
-        let known = truth.elastic(stability.rigid);
-        self.report.count(
-            match Judged::of(stability.verdict, &known, truth.multiplier_error) {
-                Judged::Undecided => "reduced verdicts undecided",
-                Judged::Open => "reduced verdicts that the truth leaves open",
-                Judged::Right => "reduced verdicts that are right",
-                Judged::NoNumber => {
-                    return self.find(Kind::NoNumber, format!("{name}: multipliers"));
-                }
-                Judged::False(exact) => {
-                    let largest = stability.multipliers[0].norm();
-                    let text = format!(
-                        "{name}: {}, |mu| {largest:.9} +- {:.1e}; it is {exact:.9}",
-                        stability.verdict, stability.error
-                    );
-                    return self.find(Kind::FalseReduced, text);
-                }
-            },
-        );
+    /// The verdict that the reduction leaves, and multipliers to the error that it is stated to make of them.
+    fn stability_of_reduced(
+        &mut self,
+        name: &str,
+        truth: &Truth,
+        reduced: &Reduced,
+        (few, point): (&Branch, &Point),
+    ) {
+        let own = &point.stability;
+        let stated = match reduced.stability_at(&self.sparse, few, point) {
+            Ok(stated) => stated,
+            Err(error) => return self.find(Kind::Refused, format!("{name}: {error}")),
+        };
+        let known = truth.elastic(own.rigid);
+        let unsure = truth.multiplier_error;
+        if matches!(Judged::of(own.verdict, &known, unsure), Judged::False(_)) {
+            self.report
+                .count("verdicts of reduced equations that are not those of the whole structure");
+        }
+        match Judged::of(stated.verdict, &known, unsure) {
+            Judged::Undecided if own.verdict == Verdict::Undecided => {
+                self.report.count("reduced verdicts undecided");
+            }
+            Judged::Undecided => self
+                .report
+                .count("reduced verdicts that the reduction leaves open"),
+            Judged::Open => self
+                .report
+                .count("reduced verdicts that the truth leaves open"),
+            Judged::Right => self.report.count("reduced verdicts that are right"),
+            Judged::NoNumber => self.find(Kind::NoNumber, format!("{name}: multipliers")),
+            Judged::False(exact) => {
+                let largest = own.multipliers[0].norm();
+                let text = format!(
+                    "{name}: {}, |mu| {largest:.9} +- {:.1e}; it is {exact:.9}",
+                    stated.verdict, stated.errors[0]
+                );
+                self.find(Kind::FalseReduced, text);
+            }
+        }
+        for (index, (mu, error)) in own.multipliers.iter().zip(&stated.errors).enumerate() {
+            // Of a pair one is enough.
+            if mu.im < 0.0 {
+                continue;
+            }
+            if error.is_infinite() {
+                self.report.count(if index < 2 {
+                    "largest multipliers of reduced orbits without a bound"
+                } else {
+                    "other multipliers of reduced orbits without a bound"
+                });
+                continue;
+            }
+            let nearest = known.iter().map(|other| (other - mu).norm());
+            let off = nearest.fold(f64::INFINITY, f64::min);
+            let of = [off, error + own.error, unsure];
+            self.ratio(("multipliers of reduced orbits", Kind::Reduced), name, of);
+            if index < 2 {
+                self.ratio(
+                    ("largest multipliers of reduced orbits", Kind::Reduced),
+                    name,
+                    of,
+                );
+            }
+        }
     }
 }

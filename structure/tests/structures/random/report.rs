@@ -10,7 +10,7 @@ pub enum Kind {
     Panic,
     /// Stated to be stable or unstable, and it is not.
     FalseVerdict,
-    /// The same of a reduced structure, by more than the reduction may change.
+    /// The same of a reduced structure, with what the reduction changes.
     FalseReduced,
     /// No orbit is near one that was found.
     NotClosed,
@@ -37,7 +37,7 @@ pub enum Kind {
 impl Kind {
     /// Whether one of them is a failure, however many structures there are. Stated errors have a share.
     pub fn fails(self) -> bool {
-        self <= Self::Refused && self != Self::FalseReduced
+        self <= Self::Refused
     }
 }
 
@@ -46,7 +46,7 @@ impl Display for Kind {
         f.write_str(match self {
             Self::Panic => "panicked",
             Self::FalseVerdict => "false verdict",
-            Self::FalseReduced => "another verdict than that of the whole structure",
+            Self::FalseReduced => "false verdict on the whole structure",
             Self::NotClosed => "no orbit is there",
             Self::Elsewhere => "the true orbit is elsewhere",
             Self::NoNumber => "no number",
