@@ -50,9 +50,11 @@ pub(crate) struct Mode {
 }
 
 impl Mode {
-    /// What part of it vectors from this one on have.
-    pub(crate) fn besides(&self, first: usize) -> f64 {
-        self.parts[first..].iter().sum::<f64>().abs()
+    /// What part of it these vectors have.
+    pub(crate) fn share(&self, has: impl Fn(usize) -> bool) -> f64 {
+        let parts = self.parts.iter().enumerate();
+        let those = parts.filter(|(vector, _)| has(*vector));
+        those.map(|(_, part)| part).sum::<f64>().abs()
     }
 }
 

@@ -18,6 +18,7 @@ use crate::description::SparseStructure;
 use crate::doubt;
 use crate::exponent::{self, Change, Contacts};
 use crate::floquet::{Mode, Propagation};
+use crate::gaps::TIMES;
 use crate::reduced::{Reduced, ReducedError};
 
 /// Multipliers below this are not looked at, except the largest.
@@ -25,7 +26,9 @@ const LEAST: f64 = 0.1;
 /// The mode of another multiplier, by this part of it or of the distance to the next one, is not the mode that was asked for.
 const APART: [f64; 2] = [0.1, 0.5];
 /// A mode that has more of it in vectors besides modes is none of the whole structure.
-const BESIDES: f64 = 0.5;
+const MOSTLY: f64 = 0.5;
+/// So many harmonics of those that there are tell of a vector.
+const RESOLVED: f64 = 0.75;
 /// Multipliers of a pair differ by rounding.
 const SAME: f64 = 1e-9;
 /// A first order says nothing of exponents that change by more than this in a period.
@@ -95,12 +98,18 @@ impl Reduced {
         let measured = at.measured.measured(structure, near);
         let contacts = Contacts::of(self, &at);
         let period = TAU / at.base;
+        // Where nothing is left out vectors besides modes are modes too.
+        let kept = if self.vectors() == self.coordinates {
+            self.vectors()
+        } else {
+            self.modes()
+        };
         let mut whole: Vec<Known> = Vec::with_capacity(modes.len());
         for (index, mode) in modes.iter().enumerate() {
             whole.push(match mode {
                 Some(mode) => {
                     let change = contacts.change(self, &at, &measured, mode);
-                    let stands = mode.besides(self.modes()) > BESIDES;
+                    let stands = mode.share(|vector| vector >= kept) > MOSTLY;
                     Known::of(&change, multipliers[index].norm(), period, stands)
                 }
                 None if is_second(multipliers, index) => whole[index - 1],
@@ -125,7 +134,9 @@ impl Reduced {
                 return None;
             }
             let mode = propagation.as_ref()?.mode(multipliers[index])?;
-            is_of(&mode, multipliers, index).then_some(mode)
+            let fastest = RESOLVED * 0.5 * TIMES as f64 * at.base;
+            let fast = mode.share(|vector| self.squares[vector] > fastest * fastest);
+            (is_of(&mode, multipliers, index) && fast <= MOSTLY).then_some(mode)
         };
         (0..count).map(of).collect()
     }

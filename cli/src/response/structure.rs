@@ -52,6 +52,17 @@ pub struct Reduction {
     pub compliance: Vec<[f64; 2]>,
     /// Of each output the largest change of a peak-to-peak along the branches, as a part of it.
     pub outputs: Vec<(String, f64)>,
+    /// Verdicts on the whole structure.
+    pub verdicts: Verdicts,
+}
+
+/// Orbits along branches by what is known of the stability of those of the whole structure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Verdicts {
+    /// How many were looked at.
+    pub looked_at: usize,
+    /// How many of them are stable or unstable, whatever the reduction changes.
+    pub decided: usize,
 }
 
 /// A structure as it is used.
@@ -101,7 +112,7 @@ pub fn completed(options: &Options, model: &dyn System) -> Options {
 /// Without the feature `sparse` there are no structures.
 #[cfg(not(feature = "sparse"))]
 mod sparse {
-    use super::{Failure, Options, Reduced, Reduction};
+    use super::{Failure, Options, Reduced, Reduction, Verdicts};
     use hertzian::{Branch, Cancel, System};
 
     /// No structure.
@@ -127,6 +138,7 @@ mod sparse {
                 frequencies: Vec::new(),
                 compliance: Vec::new(),
                 outputs: Vec::new(),
+                verdicts: Verdicts::default(),
             })
         }
     }
@@ -134,10 +146,10 @@ mod sparse {
 
 #[cfg(feature = "sparse")]
 mod sparse {
-    use hertzian::{Branch, Cancel, System};
+    use hertzian::{Branch, Cancel, System, Verdict};
     use hertzian_structure::{self as structures, SparseStructure, file};
 
-    use super::{Failure, Options, Reduced, Reduction};
+    use super::{Failure, Options, Reduced, Reduction, Verdicts};
 
     /// Orbits of a branch at which the error of the reduction is looked at, besides its events.
     const LOOKED_AT: usize = 16;
@@ -216,9 +228,16 @@ mod sparse {
         /// If an orbit cannot be read.
         pub fn of(&self, branches: &[Branch]) -> Result<Reduction, Failure> {
             let mut outputs: Vec<(String, f64)> = Vec::new();
+            let mut verdicts = Verdicts::default();
             for branch in branches {
                 let step = branch.points.len().div_ceil(LOOKED_AT).max(1);
                 let points = branch.points.iter().step_by(step);
+                for point in points.clone() {
+                    let stability = self.reduced.stability_at(&self.whole, branch, point);
+                    let verdict = stability.map_err(unreadable)?.verdict;
+                    verdicts.looked_at += 1;
+                    verdicts.decided += usize::from(verdict != Verdict::Undecided);
+                }
                 let events = branch.events.iter().map(|event| &event.point);
                 for point in points.chain(events) {
                     let found = self.reduced.errors_at(&self.whole, branch, point);
@@ -238,6 +257,7 @@ mod sparse {
                 frequencies: reduced.frequencies(),
                 compliance: reduced.compliance_errors(),
                 outputs,
+                verdicts,
             })
         }
     }
@@ -266,6 +286,11 @@ impl Reduction {
                 "error      of {name} by the reduction: at most {error:.0e} of its peak-to-peak"
             );
         }
+        let Verdicts { looked_at, decided } = self.verdicts;
+        let _ = writeln!(
+            text,
+            "stability  of the whole structure: decided at {decided} of {looked_at} orbits that were looked at"
+        );
         text
     }
 }

@@ -3,6 +3,7 @@
 mod common;
 mod events;
 mod files;
+mod multipliers;
 mod outputs;
 mod random;
 mod reduction;

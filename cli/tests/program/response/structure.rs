@@ -43,6 +43,7 @@ fn a_plate_gives_a_picture_a_reduction_and_its_error() {
         "reduction  ",
         " static vectors of 96 coordinates",
         "error      of tip by the reduction",
+        "stability  of the whole structure: decided at ",
     ] {
         assert!(outcome.summary.contains(line), "{}", outcome.summary);
     }
@@ -65,6 +66,8 @@ fn a_plate_gives_a_picture_a_reduction_and_its_error() {
     assert_eq!(reduction["outputs"][0][0], "tip");
     // That the sixteenfold of 1300 is covered to a millionth does not cover all of the force of a stop.
     assert!((1e-8..1e-4).contains(&error), "{error:e}");
+    let verdicts = &reduction["verdicts"];
+    assert_eq!(verdicts["decided"], verdicts["looked_at"]);
     let branch = &all["branches"][0];
     assert_eq!(branch["stopped"], "reached-end");
     let last = branch["points"].as_array().and_then(|all| all.last());

@@ -6,8 +6,8 @@
 //! draws as many structures instead of [`STRUCTURES`]. A structure depends on its number only; `HERTZIAN_MODEL=17` runs that one and prints
 //! it, and `HERTZIAN_FIRST=100` begins with that one.
 //!
-//! A false verdict, an orbit that is none, a panic, what is no number and a structure that is refused fail the test, and so do stated errors
-//! that are exceeded too often. Changes of verdicts without an event, and events that one method alone has, are counted and printed.
+//! A false verdict, by all modes or by few, an orbit that is none, a panic, what is no number and a structure that is refused fail the test,
+//! and so do stated errors that are exceeded too often. Changes of verdicts without an event, and events that one method alone has, are counted and printed.
 
 mod borders;
 mod draw;
