@@ -1,6 +1,6 @@
 //! A structure by fewer modes than all, against the whole one.
 
-use hertzian::{Branch, Point, Verdict};
+use hertzian::{Branch, Complex, Point, Stability, Verdict};
 use hertzian_structure::{Reduced, Reduction};
 
 use super::judge::{Asked, Case, Judged, ORBITS, Whole, of_one, said};
@@ -143,7 +143,18 @@ impl Case {
                 self.find(Kind::FalseReduced, text);
             }
         }
-        for (index, (mu, error)) in own.multipliers.iter().zip(&stated.errors).enumerate() {
+        self.multipliers_of_reduced(name, (&known, unsure), own, &stated.errors);
+    }
+
+    /// Of a reduced orbit, to known ones, and what these are known to.
+    fn multipliers_of_reduced(
+        &mut self,
+        name: &str,
+        (known, unsure): (&[Complex<f64>], f64),
+        own: &Stability,
+        errors: &[f64],
+    ) {
+        for (index, (mu, error)) in own.multipliers.iter().zip(errors).enumerate() {
             // Of a pair one is enough.
             if mu.im < 0.0 {
                 continue;
@@ -161,11 +172,8 @@ impl Case {
             let of = [off, error + own.error, unsure];
             self.ratio(("multipliers of reduced orbits", Kind::Reduced), name, of);
             if index < 2 {
-                self.ratio(
-                    ("largest multipliers of reduced orbits", Kind::Reduced),
-                    name,
-                    of,
-                );
+                let largest = "largest multipliers of reduced orbits";
+                self.ratio((largest, Kind::Reduced), name, of);
             }
         }
     }
