@@ -32,6 +32,8 @@ pub(crate) struct Doubt {
     spread: f64,
     /// What stands in square brackets in (1), where there is something.
     inner: Option<DMatrix<f64>>,
+    /// The lowest frequency of what is left out, as modes that are kept have it.
+    next: f64,
     /// (1) of each harmonic from the first one on, of what is read along all directions by what is driven.
     coupled: Vec<DMatrix<f64>>,
 }
@@ -58,6 +60,7 @@ impl Doubt {
             .map(|inner| coupled(reduced, inner, speeds, base));
         Self {
             spread,
+            next: next(reduced),
             coupled: coupled.unwrap_or_default(),
             inner,
         }
@@ -86,8 +89,8 @@ impl Doubt {
         let by_coupling = self.inner.as_ref().map_or(0.0, |inner| {
             let pairs = (0..m).flat_map(|i| (0..m).map(move |j| (i, j)));
             let terms = pairs.map(|(i, j)| adjoint[i] * positions[j] * inner[(i, j)]);
-            let beyond = reduced.squares.get(reduced.modes).copied().unwrap_or(0.0);
             // Near the lowest frequency of what is left out it answers by more.
+            let beyond = self.next * self.next;
             let answers = (1.0 / (1.0 - frequency * frequency / beyond)).abs();
             let answers = if answers.is_nan() {
                 DYNAMIC
@@ -132,6 +135,16 @@ impl Doubt {
                 0.0
             }
     }
+}
+
+/// A frequency behind that of the last mode by what modes are apart on the mean, or that of the first vector besides modes where it is lower.
+fn next(reduced: &Reduced) -> f64 {
+    let frequencies = reduced.frequencies();
+    let last = frequencies[reduced.modes - 1];
+    let next = last * (1.0 + 1.0 / reduced.modes as f64);
+    frequencies
+        .get(reduced.modes)
+        .map_or(next, |first| first.min(next))
 }
 
 /// The damping matrix of the vectors with gyroscopic ones at their speeds.

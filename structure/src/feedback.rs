@@ -235,7 +235,7 @@ impl<'r> Feedback<'r> {
         if self.matrix.is_none() {
             return vec![0.0; read.len()];
         }
-        let Some(changes) = self.answered(read, &self.sources(off)) else {
+        let Some(changes) = self.answered(read, &Self::sources(off)) else {
             return vec![f64::NAN; read.len()];
         };
         let largest = |changes: &DMatrix<f64>| {
@@ -252,7 +252,7 @@ impl<'r> Feedback<'r> {
     /// By how much gaps, and then rates, of all contacts are off over time: two columns for cosine and sine of each harmonic by which one of them
     /// is off without what contacts make of that. None where forces are not determined.
     pub(crate) fn gaps_off(&self, off: &[Vec<f64>]) -> Option<[Vec<DMatrix<f64>>; 2]> {
-        let sources = self.sources(off);
+        let sources = Self::sources(off);
         let contacts = self.slopes.len();
         let of = |derivatives: i32| {
             let read = (0..contacts).map(|contact| Read {
@@ -306,7 +306,7 @@ impl<'r> Feedback<'r> {
     }
 
     /// Every harmonic that a gap is off by, where it matters.
-    fn sources(&self, off: &[Vec<f64>]) -> Vec<Source> {
+    fn sources(off: &[Vec<f64>]) -> Vec<Source> {
         let largest = off.iter().flatten().fold(0.0, |most: f64, x| most.max(*x));
         let all = off.iter().enumerate();
         let all = all.flat_map(|(contact, off)| {

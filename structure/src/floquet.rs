@@ -94,15 +94,15 @@ impl Propagation {
         for time in 0..TIMES {
             let now = contacts.iter();
             let now: Vec<_> = now.map(|of| [of.by_gap[time], of.by_rate[time]]).collect();
-            let half = match halves.last().filter(|_| before.as_ref() == Some(&now)) {
-                Some(same) => same.clone(),
-                None => {
-                    let slope = generator(reduced, damping, &units, &now);
-                    if slope.iter().any(|x| !x.is_finite()) {
-                        return None;
-                    }
-                    (slope * (0.5 * period / TIMES as f64)).exp()
+            let same = halves.last().filter(|_| before.as_ref() == Some(&now));
+            let half = if let Some(same) = same {
+                same.clone()
+            } else {
+                let slope = generator(reduced, damping, &units, &now);
+                if slope.iter().any(|x| !x.is_finite()) {
+                    return None;
                 }
+                (slope * (0.5 * period / TIMES as f64)).exp()
             };
             whole = &half * (&half * whole);
             halves.push(half);

@@ -185,7 +185,7 @@ impl Known {
             let by = change.most(second) * period;
             (by, change.growth(second) * period)
         };
-        if growth.is_nan() || !stands && !(by <= FIRST_ORDER) {
+        if growth.is_nan() || by.is_nan() || !stands && by > FIRST_ORDER {
             return Self::NOTHING;
         }
         let least = if stands { 0.0 } else { size * (-growth).exp() };
