@@ -71,15 +71,15 @@ impl Doubt {
         self.spread == 0.0 && self.inner.is_none()
     }
 
-    /// How much a Floquet mode changes its exponent at most, by what is not known of the damping of its motion at a frequency: the harmonics of
-    /// positions of all vectors, and of the adjoint motion.
+    /// How much a Floquet mode changes its exponent at most, by ratios that differ and by what vectors are coupled with, for its motion at a
+    /// frequency: the harmonics of positions of all vectors, and of the adjoint motion.
     pub(crate) fn of_exponent(
         &self,
         reduced: &Reduced,
         frequency: f64,
         positions: &[Complex<f64>],
         adjoint: &[Complex<f64>],
-    ) -> f64 {
+    ) -> [f64; 2] {
         let m = reduced.vectors();
         let of_vector = |i: usize| {
             let rate = frequency.abs() * positions[i].norm();
@@ -99,7 +99,7 @@ impl Doubt {
             };
             answers * frequency * frequency * terms.sum::<Complex<f64>>().norm()
         });
-        by_ratios + by_coupling
+        [by_ratios, by_coupling]
     }
 
     /// Of the compliance between a direction that is read and one that is driven.

@@ -44,29 +44,36 @@ pub(crate) struct Change {
     compliance: Compliance,
     /// The largest damping ratio of vectors besides modes.
     ratio: f64,
-    damping: f64,
+    /// By ratios of damping, and by what damping couples vectors with.
+    damping: [f64; 2],
     /// By other orbits, and the real part of that.
     orbit: [f64; 2],
 }
 
 impl Change {
     /// What is of the second order.
-    pub(crate) fn second(&self) -> f64 {
+    fn second(&self) -> f64 {
         self.compliance.sizes * self.compliance.share().min(1.0)
     }
 
     /// How much it is at most, with what is of the second order.
-    pub(crate) fn most(&self, second: f64) -> f64 {
-        self.compliance.sizes + second + self.damping + self.orbit[0]
+    pub(crate) fn most(&self) -> f64 {
+        let damping = self.damping[0] + self.damping[1];
+        self.compliance.sizes + self.second() + damping + self.orbit[0]
     }
 
-    /// How much of it is growth or decay.
-    pub(crate) fn growth(&self, second: f64) -> f64 {
+    /// How much of that is growth or decay.
+    pub(crate) fn growth(&self) -> f64 {
+        self.first_growth() + self.second() + self.damping[1]
+    }
+
+    /// To first order, without what damping couples the vectors with, which takes energy from what is left out.
+    pub(crate) fn first_growth(&self) -> f64 {
         let Compliance {
             signed, unsigned, ..
         } = self.compliance;
         let turned = (POWER * self.ratio).min(1.0) * signed.norm();
-        signed.re.abs() + turned + unsigned + second + self.damping + self.orbit[1]
+        signed.re.abs() + turned + unsigned + self.damping[0] + self.orbit[1]
     }
 }
 
@@ -337,9 +344,9 @@ impl<'m> Along<'m> {
 }
 
 /// What is not known of damping.
-fn by_damping(waves: &Waves, reduced: &Reduced, at: &AtOrbit<'_>, mode: &Mode) -> f64 {
+fn by_damping(waves: &Waves, reduced: &Reduced, at: &AtOrbit<'_>, mode: &Mode) -> [f64; 2] {
     if at.doubt.is_none() {
-        return 0.0;
+        return [0.0; 2];
     }
     let of = |vectors: &DMatrix<Complex<f64>>, sign: i32| {
         let rows = vectors.row_iter();
@@ -358,5 +365,7 @@ fn by_damping(waves: &Waves, reduced: &Reduced, at: &AtOrbit<'_>, mode: &Mode) -
         at.doubt
             .of_exponent(reduced, frequency, &positions, &adjoint)
     });
-    terms.sum()
+    terms.fold([0.0; 2], |[ratios, coupled], term| {
+        [ratios + term[0], coupled + term[1]]
+    })
 }

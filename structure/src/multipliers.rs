@@ -179,11 +179,9 @@ impl Known {
     /// Of this size, where the exponent changes, and where the mode may stand for others.
     fn of(change: &Change, size: f64, period: f64, stands: bool) -> Self {
         let (by, growth) = if stands {
-            (f64::INFINITY, change.growth(0.0) * period)
+            (f64::INFINITY, change.first_growth() * period)
         } else {
-            let second = change.second();
-            let by = change.most(second) * period;
-            (by, change.growth(second) * period)
+            (change.most() * period, change.growth() * period)
         };
         if growth.is_nan() || by.is_nan() || !stands && by > FIRST_ORDER {
             return Self::NOTHING;
