@@ -25,6 +25,9 @@ pub(crate) const COUPLED: usize = 16;
 /// What is left out answers a fast motion by so many times as much as a slow one: that is twice at 0.7 of its lowest frequency.
 const DYNAMIC: f64 = 2.0;
 
+/// A mode that is left out may be so near to the last one that is kept, as a part of its frequency.
+const NEAR: f64 = 1e-2;
+
 /// What is not known of the compliances of a reduced structure at the harmonics of an orbit.
 #[derive(Debug, Default)]
 pub(crate) struct Doubt {
@@ -32,7 +35,7 @@ pub(crate) struct Doubt {
     spread: f64,
     /// What stands in square brackets in (1), where there is something.
     inner: Option<DMatrix<f64>>,
-    /// The lowest frequency of what is left out, as modes that are kept have it.
+    /// The lowest frequency that what is left out may have.
     next: f64,
     /// (1) of each harmonic from the first one on, of what is read along all directions by what is driven.
     coupled: Vec<DMatrix<f64>>,
@@ -137,14 +140,12 @@ impl Doubt {
     }
 }
 
-/// A frequency behind that of the last mode by what modes are apart on the mean, or that of the first vector besides modes where it is lower.
+/// A frequency little above that of the last mode, or that of the first vector besides modes where it is lower.
 fn next(reduced: &Reduced) -> f64 {
     let frequencies = reduced.frequencies();
-    let last = frequencies[reduced.modes - 1];
-    let next = last * (1.0 + 1.0 / reduced.modes as f64);
-    frequencies
-        .get(reduced.modes)
-        .map_or(next, |first| first.min(next))
+    let next = frequencies[reduced.modes - 1] * (1.0 + NEAR);
+    let first = frequencies.get(reduced.modes);
+    first.map_or(next, |first| first.min(next))
 }
 
 /// The damping matrix of the vectors with gyroscopic ones at their speeds.

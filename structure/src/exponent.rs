@@ -27,6 +27,8 @@ use crate::reduced::Reduced;
 
 /// Gaps and rates are moved by this part of their span at least to see what contacts are otherwise.
 const MOVED: f64 = 1e-3;
+/// Frequencies of modes are known to this part.
+const KNOWN: f64 = 1e-9;
 /// An error of a compliance that grows with this power of the frequency, the least one of static vectors, is turned by so many times the
 /// damping ratio.
 const POWER: f64 = 4.0;
@@ -44,6 +46,8 @@ pub(crate) struct Change {
     compliance: Compliance,
     /// The largest damping ratio of vectors besides modes.
     ratio: f64,
+    /// By what frequencies of modes are known to.
+    modes: f64,
     /// By ratios of damping, and by what damping couples vectors with.
     damping: [f64; 2],
     /// By other orbits, and the real part of that.
@@ -59,7 +63,7 @@ impl Change {
     /// How much it is at most, with what is of the second order.
     pub(crate) fn most(&self) -> f64 {
         let damping = self.damping[0] + self.damping[1];
-        self.compliance.sizes + self.second() + damping + self.orbit[0]
+        self.compliance.sizes + self.second() + damping + self.orbit[0] + self.modes
     }
 
     /// How much of that is growth or decay.
@@ -118,6 +122,7 @@ impl Contacts {
         Change {
             compliance: along.by_compliance(&waves, at.base, measured),
             ratio: ratio.fold(0.0, f64::max),
+            modes: KNOWN * mode.frequency(&reduced.frequencies()),
             damping: by_damping(&waves, reduced, at, mode),
             orbit: self
                 .moved

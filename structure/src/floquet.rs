@@ -50,6 +50,12 @@ pub(crate) struct Mode {
 }
 
 impl Mode {
+    /// The mean of frequencies of vectors by what part of it they have.
+    pub(crate) fn frequency(&self, frequencies: &[f64]) -> f64 {
+        let parts = self.parts.iter().zip(frequencies);
+        parts.map(|(part, frequency)| part.abs() * frequency).sum()
+    }
+
     /// What part of it these vectors have.
     pub(crate) fn share(&self, has: impl Fn(usize) -> bool) -> f64 {
         let parts = self.parts.iter().enumerate();
