@@ -360,9 +360,6 @@ impl Case {
     /// Orbits of the structure with all modes.
     fn orbits(&mut self, whole: &Whole, branch: &Branch, asked: Asked) {
         for index in self.chosen(branch, ORBITS[0]) {
-            if std::env::var("QUICK").is_ok() {
-                continue;
-            }
             let point = &branch.points[index];
             self.report.count("orbits");
             let Some(truth) = self.truth(whole, point) else {
