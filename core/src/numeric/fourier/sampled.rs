@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use realfft::num_complex::Complex64;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use realfft::{ComplexToReal, RealToComplex};
 
 #[cfg(test)]
 use super::series;
@@ -31,9 +31,8 @@ impl std::fmt::Debug for SampledTransform {
 impl SampledTransform {
     /// Plans for `samples >= 2` phases `tau_j = 2 pi j / samples`.
     pub fn new(samples: usize) -> Self {
-        let mut planner = RealFftPlanner::new();
-        let forward = planner.plan_fft_forward(samples);
-        let backward = planner.plan_fft_inverse(samples);
+        let forward = hertzian_fourier::forward(samples);
+        let backward = hertzian_fourier::inverse(samples);
         let scratch = forward.get_scratch_len().max(backward.get_scratch_len());
         Self {
             samples,

@@ -117,7 +117,6 @@ fn it_has_no_derivatives_and_no_multipliers() {
     assert!(backbones().iter().all(has_no_derivatives));
 }
 
-#[cfg(feature = "serde")]
 #[test]
 fn what_is_read_is_what_was_written() {
     let path = std::env::temp_dir().join(format!("hertzian-backbone-{}.json", std::process::id()));
@@ -138,7 +137,6 @@ fn what_is_read_is_what_was_written() {
     std::fs::remove_file(path).ok();
 }
 
-#[cfg(feature = "plot")]
 #[test]
 fn it_is_drawn() {
     use hertzian::chart::View;

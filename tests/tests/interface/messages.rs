@@ -65,7 +65,6 @@ fn masses_are_positive() {
     assert!(response.is_ok());
 }
 
-#[cfg(feature = "plot")]
 #[test]
 fn a_file_that_cannot_be_written_is_named_once() {
     let branch = FrequencyResponse::of(&MODEL).from(0.5).to(0.6).run();
@@ -121,7 +120,6 @@ fn numbers_of_every_room_are_read() {
 }
 
 /// The least value of a linear oscillator is its closed form, with the sign turned round.
-#[cfg(feature = "plot")]
 #[test]
 fn numbers_of_a_chart_are_read() {
     use hertzian::chart::{Scale, View};

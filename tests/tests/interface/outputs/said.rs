@@ -23,7 +23,6 @@ fn what_cannot_be_read_is_said() {
     let piece = model.check(&"ground:piece9".parse().expect("a measure"));
     let piece = piece.expect_err("there are two").to_string();
     assert_eq!(piece, "ground has no piece 9: its law has 2");
-    #[cfg(feature = "plot")]
     {
         let view = hertzian::chart::View::new().of("x:h500".parse().expect("a measure"));
         let harmonic = thrown.chart_of(&view).expect_err("there are fewer");

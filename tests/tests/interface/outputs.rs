@@ -1,6 +1,5 @@
 //! Outputs by name: against closed forms, what the equations say of means and harmonics, and motions integrated here.
 
-#[cfg(feature = "plot")]
 mod drawn;
 mod said;
 mod structures;
@@ -376,7 +375,6 @@ fn a_force_that_jumps_is_read_from_both_sides() {
     close(shaking.mean.unwrap(), 0.0, 1e-9);
 }
 
-#[cfg(feature = "text")]
 #[test]
 fn text_has_the_same_outputs() {
     let text = hertzian::generic::Declaration::parse(

@@ -375,7 +375,6 @@ fn tables_and_charts_have_units() {
     assert!(sizes.contains(" um to "), "{sizes}");
 }
 
-#[cfg(feature = "serde")]
 #[test]
 fn what_is_read_is_what_was_written() {
     let name = format!("hertzian-map-{}", std::process::id());
