@@ -188,7 +188,8 @@ impl PyModel {
     /// ``accuracy_of``: the output or coordinate that the tolerance and the errors of orbits are of, all coordinates by default.
     /// ``stability``: whether Floquet multipliers are computed. ``near_orbit``, ``near_state``: the first orbit is near this one, or near
     /// the motion from this state. ``by``: a method, `HarmonicBalance`, `Shooting` or `ContactEquation`, by default the contact
-    /// equation where a law opens or has a corner (at a tolerance of 1e-8 or below: is another function beyond a level), and the balance elsewhere. ``harmonics``, ``doublings``, ``bifurcations``, ``symmetric``: options of
+    /// equation where a law opens or has a corner (at a tolerance of 1e-8 or below: is another function beyond a level), shooting where a
+    /// stiffness is unbounded on both sides of a level, and the balance elsewhere. ``harmonics``, ``doublings``, ``bifurcations``, ``symmetric``: options of
     /// the balance, which is the method where one of them is given. ``keep``: a file in which the branch is kept while it is followed.
     /// ``progress``: called with a `Progress` at every orbit; ends the computation by returning ``False``.
     ///

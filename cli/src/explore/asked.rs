@@ -66,7 +66,8 @@ fn once() -> usize {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// As [`FrequencyResponse::choice`](hertzian::FrequencyResponse::choice) has it: by the contact equation where a law opens or has a corner in the range, else by the balance.
+    /// As [`FrequencyResponse::choice`](hertzian::FrequencyResponse::choice) has it: by the contact equation where a law opens or has a corner in the range,
+    /// by shooting where a stiffness is unbounded on both sides of a level, else by the balance.
     #[default]
     Automatic,
     /// Harmonic balance.

@@ -4,7 +4,7 @@ use hertzian::Side;
 use hertzian::chart::{Chart, Curve, Scale, Series, event_markers};
 use hertzian::error::chain;
 use hertzian::export;
-use hertzian::{Branch, Event, EventKind, FrequencyResponse, HarmonicBalance, Stop, System};
+use hertzian::{Branch, Event, EventKind, FrequencyResponse, OrbitMethodKind, Stop, System};
 
 use super::exact;
 use super::figure::{Drawing, Table, Task, Value};
@@ -142,6 +142,11 @@ impl<'t> Curves<'t> {
         let branch = self.followed(case, &request)?;
         let mut events = branch.events.clone();
         let breaks = |event: &&Event| event.kind == EventKind::SymmetryBreaking;
+        // The other methods look for them anyhow.
+        let beyond = match request.choice() {
+            OrbitMethodKind::HarmonicBalance => request.clone().doublings(true),
+            _ => request.clone(),
+        };
         // Such a branch ends where it meets the curve again: it does not begin there once more.
         let mut ends = Vec::new();
         for event in branch.events.iter().filter(breaks) {
@@ -151,7 +156,7 @@ impl<'t> Curves<'t> {
             {
                 continue;
             }
-            match request.clone().doublings(true).switch(event, Side::One) {
+            match beyond.clone().switch(event, Side::One) {
                 Ok(broken) => {
                     if let Stop::Joined { value, .. } = broken.stopped {
                         ends.push(value);
@@ -176,11 +181,7 @@ impl<'t> Curves<'t> {
     }
 
     /// Traces a curve until it ends or is interrupted.
-    fn followed(
-        &mut self,
-        case: &Case,
-        request: &FrequencyResponse<HarmonicBalance>,
-    ) -> Result<Branch, String> {
+    fn followed(&mut self, case: &Case, request: &FrequencyResponse) -> Result<Branch, String> {
         let followed = request.clone().cancel(self.task.cancel).run();
         let branch = followed.map_err(|error| chain(&error).to_string())?;
         self.add(&case.label, &branch);
@@ -304,11 +305,10 @@ impl<'t> Curves<'t> {
 }
 
 /// What is asked for. A picture alone needs no more than the eye can see.
-fn request(system: &dyn System, case: &Case) -> FrequencyResponse<HarmonicBalance> {
+fn request(system: &dyn System, case: &Case) -> FrequencyResponse {
     let [from, to] = case.range;
     let tolerance = if case.exact.is_empty() { 1e-4 } else { 1e-6 };
     FrequencyResponse::of(system)
-        .by(HarmonicBalance::new())
         .from(from)
         .to(to)
         .tolerance(tolerance)

@@ -68,8 +68,8 @@ pub struct Options {
     pub period: usize,
 
     /// How the orbits of the curve are computed; --bifurcations and --track go by shooting [default: contact-equation where a law
-    /// opens or has a corner, else balance; of a --structure shooting where its laws are made of straight lines or a force jumps, else
-    /// contact-equation]
+    /// opens or has a corner, shooting where a stiffness is unbounded on both sides of a level, else balance; of a --structure shooting
+    /// where its laws are made of straight lines or a force jumps, else contact-equation]
     #[arg(long, value_enum, value_name = "METHOD")]
     pub by: Option<By>,
 

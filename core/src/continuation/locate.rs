@@ -25,6 +25,8 @@ pub(crate) struct Located {
 const ASIDE: [f64; 4] = [0.1, 0.9, 0.02, 0.98];
 /// So often at most.
 const MOST_ASIDE: usize = 60;
+/// A step whose first tangent has less than this part of it along itself is told by its chord.
+const SLANTED: f64 = 0.5;
 /// Points closer together than this part of the arc length are the same.
 const CLOSEST: f64 = 1e-14;
 
@@ -62,6 +64,23 @@ pub(crate) fn locate_along<P: AsProblem + ?Sized>(
     form: Vec<f64>,
     options: NewtonOptions,
     tolerance: f64,
+    test: impl FnMut(&mut P, &CurvePoint) -> f64,
+) -> Option<Located> {
+    search_form(problem, newton, step, form, options, tolerance, &[], test)
+}
+
+#[expect(
+    clippy::too_many_arguments,
+    reason = "a search, a form and the places that are tried"
+)]
+fn search_form<P: AsProblem + ?Sized>(
+    problem: &mut P,
+    newton: &mut Newton,
+    step: Step<'_>,
+    form: Vec<f64>,
+    options: NewtonOptions,
+    tolerance: f64,
+    others: &[f64],
     mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
     let arc = ArcLength::along_form(form, step);
@@ -85,7 +104,7 @@ pub(crate) fn locate_along<P: AsProblem + ?Sized>(
         length: arc.at(&next.0.u),
         step,
     };
-    search_along(problem, newton, way, options, tolerance, &[], test)
+    search_along(problem, newton, way, options, tolerance, others, test)
 }
 
 fn search<P: AsProblem + ?Sized>(
@@ -98,9 +117,20 @@ fn search<P: AsProblem + ?Sized>(
     test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
     let arc = ArcLength::from(newton, step.before);
+    let length = arc.length(newton, step.before, step.next);
+    let before = step.before;
+    let chord = step.difference();
+    if length < SLANTED * newton.norm().length(before.scale, &chord) {
+        // Beside a touch from which the branch goes as a root its tangent tells nothing of where it goes.
+        let mut form = vec![0.0; chord.len()];
+        newton.norm().linear_form(before.scale, &chord, &mut form);
+        return search_form(
+            problem, newton, step, form, options, tolerance, others, test,
+        );
+    }
     let way = Way {
         arc: &arc,
-        length: arc.length(newton, step.before, step.next),
+        length,
         step,
     };
     search_along(problem, newton, way, options, tolerance, others, test)

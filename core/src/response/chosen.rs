@@ -5,12 +5,16 @@
 //! derivatives, as an odd power above one, has harmonics that fall off faster, and few of them are few unknowns, unless many digits are asked
 //! for. So laws and the tolerance tell which method is quicker; what was measured is in DESIGN.md.
 //!
+//! Where the stiffness of a force is unbounded on both sides of a level, a branch bends beside a touch of it so sharply that the contact equation
+//! takes many steps there, or is lost; shooting passes it.
+//!
 //! The contact equation has no equation for a system that nothing holds, may miss a first orbit, and may end where its equations fit no
 //! further orbit. There the balance is tried, which was asked for every branch before there was a choice.
 
 use super::kind::OrbitMethodKind;
 use super::otherwise::Either;
 use super::sealed::Follow;
+use super::steep::Steep;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::Branch;
 use crate::branches::point::{Event, Point};
@@ -19,10 +23,11 @@ use crate::branches::request::Request;
 use crate::contact_equation::ContactEquation;
 use crate::error::Error;
 use crate::event::Side;
-use crate::law::{Law, LawFacts, On, PieceFacts, Quantity, Variation};
+use crate::law::{Exponent, Law, LawFacts, On, PieceFacts, Quantity, Variation};
 use crate::laws::single::{self, Single};
 use crate::model::layout::Layout;
 use crate::orbit::observe::Accuracy;
+use crate::shooting::Shooting;
 use crate::system::{System, Variable};
 
 /// The frequency at which laws are looked at. It is in none but through a coefficient of time in units of its own.
@@ -39,8 +44,10 @@ const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 /// The method that fits the system, which a [`FrequencyResponse`](crate::FrequencyResponse) uses unless another one is
 /// [asked for](crate::FrequencyResponse::by): the [contact equation](ContactEquation) where a law opens, that is has a piece without force, or
 /// has a corner or a jump at a level, and the [harmonic balance](HarmonicBalance) where every force is smooth. At a tolerance of 1e-8 or below it
-/// is the contact equation wherever a force is another function on the other side of a level. Where the contact equation has no equations for the
-/// system, finds no first orbit or leads no further, the balance is tried: [`Branch::method`] says what a branch was followed by.
+/// is the contact equation wherever a force is another function on the other side of a level. Where the stiffness of a law is unbounded on both
+/// sides of a level, as of `sgn(x)*|x|^0.6`, it is [shooting](Shooting). Where the contact equation has no equations for the
+/// system, finds no first orbit or leads no further, or shooting finds no first orbit, the balance is tried: [`Branch::method`] says what a branch
+/// was followed by.
 ///
 /// One orbit by itself is one of the balance, which the contact equation would begin with.
 ///
@@ -85,6 +92,11 @@ pub(super) enum Choice {
         /// Whether the law has a piece without force. Otherwise it has a corner or a jump at a level.
         opens: bool,
     },
+    /// The stiffness of a force is unbounded on both sides of a level.
+    Shooting {
+        /// Name of the first law of which it is one.
+        law: String,
+    },
     /// Every force is smooth, one is another function on the other side of a level, and so many digits are asked for that this matters.
     ToManyDigits {
         /// Name of the first law of which it is one.
@@ -109,9 +121,10 @@ impl Choice {
         let Some((from, to)) = request.from.zip(request.to) else {
             return Self::at(system, &request.parameters(), omega, request.tolerance);
         };
-        match at(from) {
-            Self::HarmonicBalance => at(to),
-            found => found,
+        match [at(from), at(to)] {
+            [steep @ Self::Shooting { .. }, _] | [_, steep @ Self::Shooting { .. }] => steep,
+            [Self::HarmonicBalance, other] => other,
+            [found, _] => found,
         }
     }
 
@@ -127,18 +140,25 @@ impl Choice {
                 (system.law(contact.law), arguments)
             })
             .collect();
-        let rough = contacts.iter().find_map(|(law, arguments)| {
+        let steep = contacts.iter().find_map(|(law, arguments)| {
             let facts = law.facts();
-            let opens = opens(facts);
-            let found = opens || has_corner(*law, arguments);
             let law = facts.name.to_string();
-            found.then_some(Self::ContactEquation { law, opens })
+            is_steep(facts, arguments).then_some(Self::Shooting { law })
         });
+        let rough = || {
+            contacts.iter().find_map(|(law, arguments)| {
+                let facts = law.facts();
+                let opens = opens(facts);
+                let found = opens || has_corner(*law, arguments);
+                let law = facts.name.to_string();
+                found.then_some(Self::ContactEquation { law, opens })
+            })
+        };
         let mut changing = contacts.iter().filter(|(law, arguments)| {
             // Nothing is computed for that where it does not matter.
             tolerance <= MANY_DIGITS && changes(*law, arguments)
         });
-        let choice = rough.or_else(|| {
+        let choice = steep.or_else(rough).or_else(|| {
             let (law, _) = changing.next()?;
             let law = law.facts().name.to_string();
             Some(Self::ToManyDigits { law })
@@ -150,6 +170,7 @@ impl Choice {
     pub(super) fn method(&self) -> OrbitMethodKind {
         match self {
             Self::HarmonicBalance => OrbitMethodKind::HarmonicBalance,
+            Self::Shooting { .. } => OrbitMethodKind::Shooting,
             Self::ContactEquation { .. } | Self::ToManyDigits { .. } => {
                 OrbitMethodKind::ContactEquation
             }
@@ -160,6 +181,9 @@ impl Choice {
     pub(super) fn reason(&self) -> String {
         match self {
             Self::HarmonicBalance => "every force is smooth".to_owned(),
+            Self::Shooting { law } => {
+                format!("the stiffness of law `{law}` is unbounded on both sides of a level")
+            }
             Self::ContactEquation { law, opens: true } => format!("law `{law}` opens"),
             Self::ContactEquation { law, opens: false } => format!("law `{law}` has a corner"),
             Self::ToManyDigits { law } => {
@@ -186,7 +210,7 @@ fn has_corner(law: &dyn Law, arguments: &[f64]) -> bool {
             || level.by_gap_jumps
             || level.by_rate_jumps
             || level.unbounded_by_gap;
-        may && (is_unbounded(law.facts(), index, arguments)
+        may && (is_unbounded(law.facts(), index, arguments).contains(&true)
             || RATES.iter().any(|rate| {
                 let at = [levels[index], *rate];
                 let sides = [index, index + 1];
@@ -218,14 +242,21 @@ fn changes(law: &dyn Law, arguments: &[f64]) -> bool {
     })
 }
 
-/// Whether a derivative by the gap is unbounded on a side of a level.
-fn is_unbounded(law: &LawFacts, level: usize, arguments: &[f64]) -> bool {
+/// Whether a derivative by the gap is unbounded below a level, and above it.
+fn is_unbounded(law: &LawFacts, level: usize, arguments: &[f64]) -> [bool; 2] {
     let below = law.pieces[level].terms.iter();
-    let below = below.map(|term| (term.of, term.upper));
+    let mut below = below.map(|term| (term.of, term.upper));
     let above = law.pieces[level + 1].terms.iter();
-    let above = above.map(|term| (term.of, term.lower));
-    let mut terms = below.chain(above).filter(|(of, _)| *of == Quantity::ByGap);
-    terms.any(|(_, exponent)| exponent.value(arguments) < 0.0)
+    let mut above = above.map(|term| (term.of, term.lower));
+    let unbounded = |(of, exponent): (Quantity, Exponent)| {
+        of == Quantity::ByGap && exponent.value(arguments) < 0.0
+    };
+    [below.any(unbounded), above.any(unbounded)]
+}
+
+/// Whether a derivative by the gap is unbounded on both sides of a level.
+fn is_steep(law: &LawFacts, arguments: &[f64]) -> bool {
+    (0..law.levels.len()).any(|level| is_unbounded(law, level, arguments) == [true; 2])
 }
 
 /// Whether two limits are not one number up to rounding; what is unbounded is none.
@@ -249,33 +280,36 @@ impl Chosen {
         }
     }
 
-    /// The contact equation, where that is chosen, and the balance that is tried besides.
-    fn either(&self, request: &Request) -> Option<Either> {
-        let accuracy = self.balance.accuracy;
-        // More nodes do not resolve an output that vanishes but for rounding, and as many as there may be are asked for.
-        let of_output = matches!(accuracy, Accuracy::Output(_));
-        let chosen =
-            !self.by_balance && !of_output && Choice::within(request) != Choice::HarmonicBalance;
-        chosen.then(|| {
-            // With multipliers the contact equation finds all that happens.
-            let balance = if request.stability {
-                self.balance.for_diagram()
-            } else {
-                self.balance
-            };
-            Either::of(ContactEquation::new().accurate_in(accuracy), balance)
-        })
-    }
-
     /// What the methods find that fit, or the balance alone.
     fn by_these<T>(
         &self,
         request: &Request,
         find: impl FnOnce(&dyn Follow) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        match self.either(request) {
-            Some(either) => find(&either),
-            None => find(&self.balance),
+        let accuracy = self.balance.accuracy;
+        // More nodes do not resolve an output that vanishes but for rounding, and as many as there may be are asked for.
+        let of_output = matches!(accuracy, Accuracy::Output(_));
+        let choice = if self.by_balance || of_output {
+            Choice::HarmonicBalance
+        } else {
+            Choice::within(request)
+        };
+        // With multipliers the other methods find all that happens.
+        let balance = if request.stability {
+            self.balance.for_diagram()
+        } else {
+            self.balance
+        };
+        match choice {
+            Choice::HarmonicBalance => find(&self.balance),
+            Choice::Shooting { .. } => find(&Steep {
+                shooting: Shooting::new().accurate_in(accuracy),
+                balance,
+            }),
+            Choice::ContactEquation { .. } | Choice::ToManyDigits { .. } => {
+                let equation = ContactEquation::new().accurate_in(accuracy);
+                find(&Either::of(equation, balance))
+            }
         }
     }
 }

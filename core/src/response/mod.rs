@@ -8,6 +8,7 @@ mod by_contact_equation;
 mod by_shooting;
 mod chosen;
 mod following;
+mod in_turn;
 mod kind;
 mod multipliers;
 mod otherwise;
@@ -17,6 +18,7 @@ mod request_in_file;
 mod resume;
 #[doc(hidden)]
 pub mod stages;
+mod steep;
 
 pub(crate) use backbone::read_by_shooting;
 pub use chosen::Chosen;

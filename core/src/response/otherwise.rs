@@ -10,9 +10,8 @@ mod tests;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::by_contact_equation;
+use super::in_turn::{first_found, may_break};
 use super::sealed::Follow;
-use crate::balance::Parity;
-use crate::balance_branch::check::Asked;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::checkpoint::{Keep, Rest};
@@ -56,7 +55,7 @@ impl Follow for Either {
     }
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
-        if self.may_break(request) {
+        if may_break(request, &self.balance) {
             return self.balance.run(request, visit);
         }
         let otherwise = Some(self.otherwise(None));
@@ -79,7 +78,7 @@ impl Follow for Either {
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
-        self.first_found(request, self.may_break(request), |method| {
+        self.first_found(request, may_break(request, &self.balance), |method| {
             method.through(request, value, &mut *visit)
         })
     }
@@ -90,35 +89,13 @@ impl Either {
         Self { equation, balance }
     }
 
-    /// Whether orbits may lose a symmetry on a branch unseen: the contact equation and shooting see that by multipliers alone, and the
-    /// balance by its equations.
-    fn may_break(&self, request: &Request) -> bool {
-        let asked = Asked::of(request, &self.balance);
-        !request.stability
-            && asked.check().is_ok_and(|(context, _)| {
-                let resolution = context.resolution;
-                resolution.parity == Parity::Odd || resolution.stride > 1
-            })
-    }
-
-    /// What the contact equation finds, or else the balance; the other way round where something would stay unseen.
     fn first_found<T>(
         &self,
         request: &Request,
         unseen: bool,
-        mut find: impl FnMut(&dyn Follow) -> Result<T, Error>,
+        find: impl FnMut(&dyn Follow) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        let mut methods: [&dyn Follow; 2] = [&self.equation, &self.balance];
-        if unseen {
-            methods.reverse();
-        }
-        let found = find(methods[0]);
-        if found.is_ok() || request.cancel.is_cancelled() {
-            return found;
-        }
-        let other = find(methods[1]);
-        // The balance says why there is none.
-        if unseen { other.or(found) } else { other }
+        first_found(&self.equation, &self.balance, request, unseen, find)
     }
 
     /// What the contact equation has found, or where it is lost what the balance finds.

@@ -45,6 +45,17 @@ fn at_the_defaults_every_fold_is_found_once() {
     }
 }
 
+/// Of Fig. 2b too, with the pair below, where the exact values end.
+#[test]
+fn at_the_defaults_figure_2b_has_its_folds() {
+    for figure in [FIGURE_2B, FIGURE_2B_BELOW] {
+        let model = figure.model();
+        let request = figure.request(&*model);
+        assert_folds(&figure, &request.clone());
+        assert_folds(&figure, &request.from(figure.to).to(figure.from));
+    }
+}
+
 #[test]
 fn figure_2a_backwards_has_the_same_folds() {
     let model = FIGURE_2A.model();
