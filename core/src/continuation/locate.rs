@@ -17,7 +17,8 @@ pub(crate) struct Located {
     pub(crate) test: f64,
     /// Whether it was driven to zero; otherwise it jumps here.
     pub(crate) vanishes: bool,
-    /// By how much, as two points tell that are as near to each other as can be; infinite where the search ended before.
+    /// By how much, as two points tell that are as near to each other as can be; infinite where the search ended before, or where they are on
+    /// different branches.
     pub(crate) jump: f64,
 }
 
@@ -25,7 +26,9 @@ pub(crate) struct Located {
 const ASIDE: [f64; 4] = [0.1, 0.9, 0.02, 0.98];
 /// So often at most.
 const MOST_ASIDE: usize = 60;
-/// A step whose first tangent has less than this part of it along itself is told by its chord.
+/// Points on both sides of a jump of the test function are on one branch if this part of the step at most is between them.
+const CLOSE: f64 = 1e-3;
+/// Where the search along the first tangent is lost, and that has less than this part of the step along itself, the chord is followed.
 const SLANTED: f64 = 0.5;
 /// Points closer together than this part of the arc length are the same.
 const CLOSEST: f64 = 1e-14;
@@ -64,23 +67,6 @@ pub(crate) fn locate_along<P: AsProblem + ?Sized>(
     form: Vec<f64>,
     options: NewtonOptions,
     tolerance: f64,
-    test: impl FnMut(&mut P, &CurvePoint) -> f64,
-) -> Option<Located> {
-    search_form(problem, newton, step, form, options, tolerance, &[], test)
-}
-
-#[expect(
-    clippy::too_many_arguments,
-    reason = "a search, a form and the places that are tried"
-)]
-fn search_form<P: AsProblem + ?Sized>(
-    problem: &mut P,
-    newton: &mut Newton,
-    step: Step<'_>,
-    form: Vec<f64>,
-    options: NewtonOptions,
-    tolerance: f64,
-    others: &[f64],
     mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
     let arc = ArcLength::along_form(form, step);
@@ -104,7 +90,7 @@ fn search_form<P: AsProblem + ?Sized>(
         length: arc.at(&next.0.u),
         step,
     };
-    search_along(problem, newton, way, options, tolerance, others, test)
+    search_along(problem, newton, way, options, tolerance, &[], test)
 }
 
 fn search<P: AsProblem + ?Sized>(
@@ -114,26 +100,27 @@ fn search<P: AsProblem + ?Sized>(
     options: NewtonOptions,
     tolerance: f64,
     others: &[f64],
-    test: impl FnMut(&mut P, &CurvePoint) -> f64,
+    mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
     let arc = ArcLength::from(newton, step.before);
-    let length = arc.length(newton, step.before, step.next);
-    let before = step.before;
-    let chord = step.difference();
-    if length < SLANTED * newton.norm().length(before.scale, &chord) {
-        // Beside a touch from which the branch goes as a root its tangent tells nothing of where it goes.
-        let mut form = vec![0.0; chord.len()];
-        newton.norm().linear_form(before.scale, &chord, &mut form);
-        return search_form(
-            problem, newton, step, form, options, tolerance, others, test,
-        );
-    }
     let way = Way {
         arc: &arc,
-        length,
+        length: arc.length(newton, step.before, step.next),
         step,
     };
-    search_along(problem, newton, way, options, tolerance, others, test)
+    let found = search_along(problem, newton, way, options, tolerance, others, &mut test);
+    let is_lost = |found: &Located| !found.vanishes && found.jump.is_infinite();
+    let (before, chord) = (step.before, step.difference());
+    if !found.as_ref().is_none_or(is_lost)
+        || way.length > SLANTED * newton.norm().length(before.scale, &chord)
+    {
+        return found;
+    }
+    // Beside a touch from which the branch goes as a root its tangent tells nothing of where it goes; the chord does.
+    let mut form = vec![0.0; chord.len()];
+    newton.norm().linear_form(before.scale, &chord, &mut form);
+    let along = locate_along(problem, newton, step, form, options, tolerance, test);
+    along.filter(|along| along.vanishes).or(found)
 }
 
 /// A step, and what tells a place in it.
@@ -201,7 +188,8 @@ fn search_along<P: AsProblem + ?Sized>(
     if aside > 0 && !bracket.is_closed() {
         return None;
     }
-    let jump = if bracket.is_closed() {
+    let between = arc.apart(newton, &near.point.u, &far.point.u);
+    let jump = if bracket.is_closed() && between < CLOSE * arc.apart(newton, &a.u, &b.u) {
         near.place.value.abs() + far.place.value.abs()
     } else {
         f64::INFINITY

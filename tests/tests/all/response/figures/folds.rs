@@ -1,8 +1,8 @@
 //! Folds of the curves: at the defaults of the library, at given harmonics, and how fast they converge.
 
-use hertzian::{Event, FrequencyResponse, Stop};
+use hertzian::{Event, EventKind, FrequencyResponse, Side, Stop};
 
-use super::exact::FIGURE_5A_GALERKIN;
+use super::exact::{FIGURE_2B_UNLISTED, FIGURE_5A_GALERKIN};
 use super::models::{
     FIGURE_2A, FIGURE_2B, FIGURE_2B_BELOW, FIGURE_4A_LOAD_1, FIGURE_4A_LOAD_5, FIGURE_5A,
     FIGURE_5B, FIGURE_5C, Figure,
@@ -13,10 +13,20 @@ const KNOWN: f64 = 1e-12;
 
 /// Every fold found once, none invented: omega within the error stated, omega and peak-to-peak near the exact ones.
 fn assert_folds(figure: &Figure, request: &FrequencyResponse) {
+    assert_folds_besides(figure, request, &[]);
+}
+
+/// The same, where these folds are not among the exact ones.
+fn assert_folds_besides(figure: &Figure, request: &FrequencyResponse, unlisted: &[f64]) {
     let branch = request.run().unwrap();
     assert_eq!(branch.stopped, Stop::ReachedEnd);
     assert!(branch.turns.is_empty(), "{:?}", branch.turns);
-    let mut found: Vec<_> = branch.folds().collect();
+    let is_unlisted = |fold: &&Event| {
+        let near = |value: &f64| (fold.point.value - value).abs() < 1e-6;
+        unlisted.iter().any(near)
+    };
+    let (besides, mut found): (Vec<_>, Vec<_>) = branch.folds().partition(is_unlisted);
+    assert_eq!(besides.len(), unlisted.len());
     found.sort_by(|a, b| a.point.value.total_cmp(&b.point.value));
     assert_eq!(found.len(), figure.folds.len(), "{found:?}");
     for (fold, exact) in found.iter().zip(figure.folds) {
@@ -45,14 +55,41 @@ fn at_the_defaults_every_fold_is_found_once() {
     }
 }
 
-/// Of Fig. 2b too, with the pair below, where the exact values end.
+/// Of Fig. 2b too, from both ends.
 #[test]
 fn at_the_defaults_figure_2b_has_its_folds() {
-    for figure in [FIGURE_2B, FIGURE_2B_BELOW] {
+    let unlisted: [&[f64]; 2] = [&[], &FIGURE_2B_UNLISTED];
+    for (figure, unlisted) in [FIGURE_2B, FIGURE_2B_BELOW].iter().zip(unlisted) {
         let model = figure.model();
         let request = figure.request(&*model);
-        assert_folds(&figure, &request.clone());
-        assert_folds(&figure, &request.from(figure.to).to(figure.from));
+        assert_folds_besides(figure, &request.clone(), unlisted);
+        let back = request.from(figure.to).to(figure.from);
+        assert_folds_besides(figure, &back, unlisted);
+    }
+}
+
+/// Beside touches the branch without symmetry bends sharply: what happens between is located all the same, by steps of any length.
+#[test]
+fn what_begins_without_symmetry_in_figure_2b_is_whole() {
+    let model = FIGURE_2B.model();
+    let doublings = [0.896_507_260_971_036, 0.904_833_344_193_996];
+    for [from, to] in [[1.6, 0.38], [1.0, 0.85]] {
+        let request = FIGURE_2B.request(&*model).from(from).to(to);
+        let branch = request.run().unwrap();
+        let breaks = |event: &&Event| event.kind == EventKind::SymmetryBreaking;
+        let above = branch.events.iter().filter(breaks);
+        let event = above.max_by(|a, b| a.point.value.total_cmp(&b.point.value));
+        let broken = branch.switch(event.unwrap(), Side::One).unwrap();
+        assert!(broken.turns.is_empty(), "{:?}", broken.turns);
+        let doubled = broken.events.iter();
+        let doubled = doubled.filter(|event| event.kind == EventKind::PeriodDoubling);
+        let mut doubled: Vec<&Event> = doubled.collect();
+        doubled.sort_by(|a, b| a.point.value.total_cmp(&b.point.value));
+        assert_eq!(doubled.len(), doublings.len(), "{doubled:?}");
+        for (found, exact) in doubled.iter().zip(doublings) {
+            let apart = (found.point.value - exact).abs();
+            assert!(apart <= found.error + KNOWN, "{found} {exact}");
+        }
     }
 }
 
