@@ -120,7 +120,7 @@ fn search<P: AsProblem + ?Sized>(
     let mut form = vec![0.0; chord.len()];
     newton.norm().linear_form(before.scale, &chord, &mut form);
     let along = locate_along(problem, newton, step, form, options, tolerance, test);
-    along.filter(|along| along.vanishes).or(found)
+    along.filter(|along| !is_lost(along)).or(found)
 }
 
 /// A step, and what tells a place in it.
