@@ -87,6 +87,9 @@ impl<'s> AtOrbit<'s> {
         let of = |value: &Value| value.at(known(branch, point), point.omega());
         let speeds: Vec<f64> = structure.gyroscopic.iter().map(|g| of(&g.speed)).collect();
         let completed = branch.complete(point)?;
+        if completed.orbit.coordinates() != reduced.vectors() {
+            return Err(ReducedError::Other);
+        }
         let gaps = structure.contacts.iter().enumerate();
         let gaps = gaps.map(|(index, contact)| {
             let arguments = contact.arguments.iter().map(of).collect();

@@ -55,9 +55,15 @@ pub(crate) struct Change {
 }
 
 impl Change {
-    /// What is of the second order.
+    /// What is of the second and of higher orders: terms of a series in the part that is left of a geometric one. None is known where the error is
+    /// no small part of what keeps the mode up.
     fn second(&self) -> f64 {
-        self.compliance.sizes * self.compliance.share().min(1.0)
+        let share = self.compliance.share();
+        if share < 1.0 {
+            self.compliance.sizes * share / (1.0 - share)
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// How much it is at most, with what is of the second order.
@@ -162,21 +168,18 @@ fn changed(gap: &Gap<'_>, which: usize, by: f64) -> Slopes {
         both[which] = by;
         gap.means(both)
     };
-    let (up, down) = (moved(by), moved(-by));
-    let slope = |up: &[f64], down: &[f64]| {
-        let pairs = up.iter().zip(down);
-        let same = |up: f64, down: f64| {
-            if up == down {
-                0.0
-            } else {
-                (up - down) / (2.0 * by)
-            }
-        };
-        pairs.map(|(up, down)| same(*up, *down)).collect()
+    let (up, here, down) = (moved(by), moved(0.0), moved(-by));
+    // The larger one of both sides: where a contact just closes, or a slope is even about the gap, they differ.
+    let slope = |up: &[f64], here: &[f64], down: &[f64]| {
+        let change = |to: f64, from: f64| if to == from { 0.0 } else { (to - from) / by };
+        let all = up.iter().zip(here).zip(down);
+        let sides = all.map(|((up, here), down)| [change(*up, *here), change(*here, *down)]);
+        let larger = |[up, down]: [f64; 2]| if up.abs() > down.abs() { up } else { down };
+        sides.map(larger).collect()
     };
     Slopes {
-        by_gap: slope(&up.by_gap, &down.by_gap),
-        by_rate: slope(&up.by_rate, &down.by_rate),
+        by_gap: slope(&up.by_gap, &here.by_gap, &down.by_gap),
+        by_rate: slope(&up.by_rate, &here.by_rate, &down.by_rate),
     }
 }
 

@@ -11,10 +11,10 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::{Branch, Complex, Point, Verdict};
+use hertzian::{Branch, Complex, Point, Stability, Verdict};
 
 use crate::at_orbit::AtOrbit;
-use crate::description::SparseStructure;
+use crate::description::{Damping, SparseStructure};
 use crate::doubt;
 use crate::exponent::{self, Change, Contacts};
 use crate::floquet::{Mode, Propagation};
@@ -31,6 +31,8 @@ const MOSTLY: f64 = 0.5;
 const RESOLVED: f64 = 0.75;
 /// Multipliers of a pair differ by rounding.
 const SAME: f64 = 1e-9;
+/// An orbit over more periods of the excitation than this is not resolved.
+const MOST_PERIODS: f64 = 2.5;
 /// A first order says nothing of exponents that change by more than this in a period.
 const FIRST_ORDER: f64 = 1.0;
 
@@ -42,12 +44,15 @@ const FIRST_ORDER: f64 = 1.0;
 #[non_exhaustive]
 pub struct ReducedStability {
     /// Whether small perturbations of the orbit of the whole structure die out: undecided where multipliers, to what is known of them as
-    /// those of the whole structure, may lie on either side of the unit circle. Modes that are left out altogether are taken to be damped.
+    /// those of the whole structure, may lie on either side of the unit circle. Modes that are left out altogether are taken to be damped:
+    /// without damping nothing is stable. Above 300 coordinates compliances are interpolated between frequencies, and a verdict is as good
+    /// as that.
     pub verdict: Verdict,
     /// How far from each of the orbit's [multipliers](hertzian::Stability::multipliers), in their order, one of the whole structure is at
     /// most: to first order, without unit, beside their own error. Those below 0.1 are not looked at, unless they are the largest. Infinite
     /// where there is no bound: that is so of modes that are made of vectors besides modes, where the first order says nothing, where
-    /// the mode is not resolved by 128 times of the period, and of all with more than 60 vectors.
+    /// multipliers lie next to each other, where the mode is not resolved by 128 times of the period, of orbits over more than two periods, and
+    /// of all with more than 60 vectors. Multipliers beyond the end of this list are those below 0.1.
     pub errors: Vec<f64>,
 }
 
@@ -92,7 +97,7 @@ impl Reduced {
     ) -> Result<ReducedStability, ReducedError> {
         let at = AtOrbit::of(self, structure, branch, point)?;
         let multipliers = &point.stability.multipliers;
-        let modes = self.floquet_modes(&at, multipliers);
+        let modes = self.floquet_modes(&at, point);
         let near = modes.iter().flatten();
         let near = near.flat_map(|mode| exponent::frequencies(mode, at.base));
         let measured = at.measured.measured(structure, near);
@@ -110,25 +115,38 @@ impl Reduced {
                 Some(mode) => {
                     let change = contacts.change(self, &at, &measured, mode);
                     let stands = mode.share(|vector| vector >= kept) > MOSTLY;
-                    Known::of(&change, multipliers[index].norm(), period, stands)
+                    let mu = multipliers[index];
+                    let apart = others(point, index).map(|other| (mu / other).ln().norm());
+                    let apart = apart.fold(f64::INFINITY, f64::min);
+                    Known::of(&change, mu.norm(), [period, apart], stands)
                 }
                 None if is_second(multipliers, index) => whole[index - 1],
                 None => Known::NOTHING,
             });
         }
+        let left_out = self.vectors() < self.coordinates;
+        let verdict = match verdict(point, &whole) {
+            Verdict::Stable if left_out && is_undamped(&structure.damping) => Verdict::Undecided,
+            other => other,
+        };
         Ok(ReducedStability {
-            verdict: verdict(point, &whole),
+            verdict,
             errors: whole.iter().map(|known| known.error).collect(),
         })
     }
 
     /// Modes of the multipliers that matter, of a pair that of the first one; none where it is not resolved.
-    fn floquet_modes(&self, at: &AtOrbit<'_>, multipliers: &[Complex<f64>]) -> Vec<Option<Mode>> {
+    fn floquet_modes(&self, at: &AtOrbit<'_>, point: &Point) -> Vec<Option<Mode>> {
+        let multipliers = &point.stability.multipliers;
         let many = multipliers.iter().take_while(|mu| mu.norm() >= LEAST);
         let count = many.count().max(1).min(multipliers.len());
         let damping = doubt::damping(self, &at.speeds);
         let means: Vec<_> = at.gaps.iter().map(|gap| gap.means([0.0; 2])).collect();
-        let propagation = Propagation::of(self, &damping, &means, at.base);
+        // A period of many periods of the excitation has too few times in each.
+        let is_resolved = point.omega() <= MOST_PERIODS * at.base;
+        let propagation = is_resolved
+            .then(|| Propagation::of(self, &damping, &means, at.base))
+            .flatten();
         let of = |index: usize| {
             if is_second(multipliers, index) {
                 return None;
@@ -136,7 +154,7 @@ impl Reduced {
             let mode = propagation.as_ref()?.mode(multipliers[index])?;
             let fastest = RESOLVED * 0.5 * TIMES as f64 * at.base;
             let fast = mode.share(|vector| self.squares[vector] > fastest * fastest);
-            (is_of(&mode, multipliers, index) && fast <= MOSTLY).then_some(mode)
+            (is_of(&mode, point, index) && fast <= MOSTLY).then_some(mode)
         };
         (0..count).map(of).collect()
     }
@@ -151,11 +169,20 @@ fn is_second(multipliers: &[Complex<f64>], index: usize) -> bool {
         && (index < 2 || !is_second(multipliers, index - 1))
 }
 
+/// All multipliers but one, with those of motions that nothing holds, which are not among the others.
+fn others(point: &Point, index: usize) -> impl Iterator<Item = Complex<f64>> {
+    let Stability {
+        multipliers, rigid, ..
+    } = &point.stability;
+    let all = multipliers.iter().enumerate();
+    let all = all.filter(move |(i, _)| *i != index).map(|(_, mu)| *mu);
+    all.chain(std::iter::repeat_n(Complex::new(1.0, 0.0), *rigid))
+}
+
 /// Whether a mode is that of a multiplier.
-fn is_of(mode: &Mode, multipliers: &[Complex<f64>], index: usize) -> bool {
-    let known = multipliers[index];
-    let others = multipliers.iter().enumerate().filter(|(i, _)| *i != index);
-    let next = others.map(|(_, other)| (other - known).norm());
+fn is_of(mode: &Mode, point: &Point, index: usize) -> bool {
+    let known = point.stability.multipliers[index];
+    let next = others(point, index).map(|other| (other - known).norm());
     let next = next.fold(f64::INFINITY, f64::min);
     let apart = (mode.multiplier - known).norm();
     apart <= APART[0] * known.norm() && apart <= APART[1] * next
@@ -176,21 +203,37 @@ impl Known {
         sizes: [0.0, f64::INFINITY],
     };
 
-    /// Of this size, where the exponent changes, and where the mode may stand for others.
-    fn of(change: &Change, size: f64, period: f64, stands: bool) -> Self {
-        let (by, growth) = if stands {
+    /// Of this size, where the exponent changes, and where the mode may stand for others. Exponents times the period that are `apart` by no more
+    /// than twice what they change by may meet, and part as a root.
+    fn of(change: &Change, size: f64, [period, apart]: [f64; 2], stands: bool) -> Self {
+        let (mut by, mut growth) = if stands {
             (f64::INFINITY, change.first_growth() * period)
         } else {
             (change.most() * period, change.growth() * period)
         };
-        if growth.is_nan() || by.is_nan() || !stands && by > FIRST_ORDER {
+        if growth.is_nan() || by.is_nan() || !stands && by > FIRST_ORDER.min(0.5 * apart) {
             return Self::NOTHING;
+        }
+        if !stands && by > 0.0 {
+            // Of the second order, by the mode that is the nearest.
+            let second = by * by / (apart - by);
+            by += second;
+            growth += second;
         }
         let least = if stands { 0.0 } else { size * (-growth).exp() };
         Self {
             error: size * by.exp_m1(),
             sizes: [least, size * growth.exp()],
         }
+    }
+}
+
+/// Whether modes that are left out have no damping.
+fn is_undamped(damping: &Damping) -> bool {
+    match damping {
+        Damping::None => true,
+        Damping::Rayleigh { mass, stiffness } => *mass <= 0.0 && *stiffness <= 0.0,
+        _ => false,
     }
 }
 

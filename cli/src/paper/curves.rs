@@ -157,7 +157,8 @@ impl<'t> Curves<'t> {
                 continue;
             }
             match beyond.clone().switch(event, Side::One) {
-                Ok(broken) => {
+                Ok(mut broken) => {
+                    self.complete("without symmetry", &mut broken);
                     if let Stop::Joined { value, .. } = broken.stopped {
                         ends.push(value);
                     }
@@ -183,9 +184,20 @@ impl<'t> Curves<'t> {
     /// Traces a curve until it ends or is interrupted.
     fn followed(&mut self, case: &Case, request: &FrequencyResponse) -> Result<Branch, String> {
         let followed = request.clone().cancel(self.task.cancel).run();
-        let branch = followed.map_err(|error| chain(&error).to_string())?;
+        let mut branch = followed.map_err(|error| chain(&error).to_string())?;
+        self.complete(&case.label, &mut branch);
         self.add(&case.label, &branch);
         Ok(branch)
+    }
+
+    /// Has what takes the whole motion read off the orbits of a curve, for the data.
+    fn complete(&mut self, label: &str, branch: &mut Branch) {
+        if let Err(error) = branch.complete_all() {
+            let why = chain(&error);
+            self.notes.push(format!(
+                "Not all orbits of the curve {label} are complete: {why}."
+            ));
+        }
     }
 
     /// Adds a branch: its curve, its data and its special orbits. Branches of one name have one place in the legend.

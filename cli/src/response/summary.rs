@@ -206,7 +206,7 @@ fn method(text: &mut String, options: &Options, branch: &Branch) -> fmt::Result 
     if choice == method {
         writeln!(text, "method     {choice}, since {}", request.reason())
     } else {
-        writeln!(text, "method     {method}, in place of the {choice}")
+        writeln!(text, "method     {method}, in place of {choice}")
     }
 }
 

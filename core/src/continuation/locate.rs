@@ -120,7 +120,12 @@ fn search<P: AsProblem + ?Sized>(
     let mut form = vec![0.0; chord.len()];
     newton.norm().linear_form(before.scale, &chord, &mut form);
     let along = locate_along(problem, newton, step, form, options, tolerance, test);
-    along.filter(|along| !is_lost(along)).or(found)
+    // A form may have its value on another part of the branch, too.
+    let whole = arc.apart(newton, &step.before.u, &step.next.u);
+    let is_inside = |along: &Located| arc.apart(newton, &step.before.u, &along.point.u) <= whole;
+    along
+        .filter(|along| !is_lost(along) && is_inside(along))
+        .or(found)
 }
 
 /// A step, and what tells a place in it.

@@ -25,16 +25,13 @@ use crate::system::System;
 
 impl Branch {
     /// Every orbit of the branch at a value of what it varies, in branch order; empty where the branch does not pass. Harmonics
-    /// follow the tolerance as along the branch. Of a branch by the contact equation they are [completed](Self::complete).
+    /// follow the tolerance as along the branch. Of a branch by the contact equation or by shooting they are [completed](Self::complete).
     ///
     /// # Errors
     /// If the value is not finite, an orbit between two points cannot be computed, or the branch was read from a file and has no
     /// [model](Self::attach).
     pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
         let found = self.plainly_at(value)?;
-        if !self.following()?.completes() {
-            return Ok(found);
-        }
         found.iter().map(|point| self.complete(point)).collect()
     }
 

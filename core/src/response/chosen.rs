@@ -46,13 +46,13 @@ const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 /// has a corner or a jump at a level, and the [harmonic balance](HarmonicBalance) where every force is smooth. At a tolerance of 1e-8 or below it
 /// is the contact equation wherever a force is another function on the other side of a level. Where the stiffness of a law is unbounded on both
 /// sides of a level, as of `sgn(x)*|x|^0.6`, it is [shooting](Shooting). Where the contact equation has no equations for the
-/// system, finds no first orbit or leads no further, or shooting finds no first orbit, the balance is tried: [`Branch::method`] says what a branch
+/// system, or one of both finds no first orbit or leads no further, the balance is tried: [`Branch::method`] says what a branch
 /// was followed by.
 ///
-/// One orbit by itself is one of the balance, which the contact equation would begin with.
+/// One orbit by itself is one of the balance, which the other methods would begin with.
 ///
 /// Whoever sets an option of the balance, as the number of harmonics, wants the balance. So it is the balance too where a symmetry is to be
-/// watched without [stability](crate::FrequencyResponse::stability), which the contact equation cannot, and where [accuracy is asked of an
+/// watched without [stability](crate::FrequencyResponse::stability), which the other methods cannot, and where [accuracy is asked of an
 /// output](crate::FrequencyResponse::accuracy_of).
 ///
 /// ```

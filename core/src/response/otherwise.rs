@@ -172,7 +172,7 @@ impl Either {
 }
 
 /// The same of what is followed once more.
-fn again(progress: Progress<'_>) -> Progress<'_> {
+pub(super) fn again(progress: Progress<'_>) -> Progress<'_> {
     let stage = match progress.stage {
         Stage::Branch => Stage::Again,
         other => other,
@@ -181,7 +181,7 @@ fn again(progress: Progress<'_>) -> Progress<'_> {
 }
 
 /// Whether a branch ended because nothing further was found.
-fn is_lost(branch: &Branch) -> bool {
+pub(super) fn is_lost(branch: &Branch) -> bool {
     matches!(
         branch.stopped,
         Stop::StepTooShort { .. } | Stop::Motion { .. }
@@ -189,12 +189,12 @@ fn is_lost(branch: &Branch) -> bool {
 }
 
 /// Whether a branch ended by itself, and not because somebody or something ended it.
-fn is_whole(branch: &Branch) -> bool {
+pub(super) fn is_whole(branch: &Branch) -> bool {
     !is_lost(branch) && !branch.stopped.can_be_resumed()
 }
 
 /// How far a branch has come from its first orbit.
-fn reach(points: &[Point]) -> f64 {
+pub(super) fn reach(points: &[Point]) -> f64 {
     let values = || points.iter().map(|point| point.value);
     let first = values().next().unwrap_or(f64::NAN);
     values().fold(0.0, |most, value| most.max((value - first).abs()))

@@ -1,4 +1,4 @@
-//! Shooting, and the harmonic balance where that finds no orbit to begin with: for laws whose stiffness is unbounded on both sides of a level.
+//! Shooting, and the harmonic balance where that finds no orbit to begin with or leads no further: for laws whose stiffness is unbounded on both sides of a level.
 //!
 //! Where the motion comes to a height `h` beyond such a level, `gap^a` with `a` below one on both sides, it stays there for a time that goes
 //! as `h^(1/2)`, and its stiffness goes as `h^(a - 1)`. So the impulse of a perturbation there, and with it the monodromy, goes as
@@ -14,6 +14,7 @@
 //! Source of the time beyond the level: Nordmark (1991), J. Sound Vib. 145, 279; what a power of the gap makes of it is (1).
 
 use super::in_turn::{first_found, may_break};
+use super::otherwise::{again, is_lost, is_whole, reach};
 use super::sealed::Follow;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::Branch;
@@ -58,7 +59,21 @@ impl Follow for Steep {
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
         let unseen = may_break(request, &self.balance);
-        self.found(request, unseen, |method| method.run(request, &mut *visit))
+        let found = self.found(request, unseen, |method| method.run(request, &mut *visit))?;
+        // A file holds what was followed in it.
+        if !is_lost(&found) || request.keep.is_some() || request.cancel.is_cancelled() {
+            return Ok(found);
+        }
+        let other = self
+            .balance
+            .run(request, &mut |progress| visit(again(progress)));
+        Ok(match other {
+            Ok(other) if is_whole(&other) || reach(&other.points) > reach(&found.points) => {
+                other.after(&found)
+            }
+            Ok(other) => found.after(&other),
+            Err(_) => found,
+        })
     }
 
     fn switch(

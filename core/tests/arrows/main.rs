@@ -53,7 +53,12 @@ const STAGES: &[&str] = &[
 ];
 
 /// Packages that the runtime is built on, and which of them each is built on itself.
-const LEAVES: &[(&str, &[&str])] = &[("contract", &[]), ("file", &[]), ("chart", &["file"])];
+const LEAVES: &[(&str, &[&str])] = &[
+    ("contract", &[]),
+    ("file", &[]),
+    ("fourier", &[]),
+    ("chart", &["file"]),
+];
 
 /// The rooms, the lowest first. What is asked of either method stands behind both.
 const ROOMS: &[&str] = &[

@@ -67,6 +67,7 @@ fn a_plate_gives_a_picture_a_reduction_and_its_error() {
     // That the sixteenfold of 1300 is covered to a millionth does not cover all of the force of a stop.
     assert!((1e-8..1e-4).contains(&error), "{error:e}");
     let verdicts = &reduction["verdicts"];
+    assert!(verdicts["looked_at"].as_u64() > Some(0));
     assert_eq!(verdicts["decided"], verdicts["looked_at"]);
     let branch = &all["branches"][0];
     assert_eq!(branch["stopped"], "reached-end");

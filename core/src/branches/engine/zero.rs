@@ -291,7 +291,7 @@ impl<'s> Search<'s> {
             |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| self.value(problem, at);
         let found = root(problem, newton, self.step, self.options, aim, value);
         let left = |root: &Root| root.located.test.abs();
-        let jumps = |root: &Root| !root.located.vanishes && root.located.jump.is_finite();
+        let jumps = |root: &Root| !root.located.vanishes;
         let jump = found.as_ref().filter(|root| jumps(root)).map(left);
         let is_fold = matches!(
             (self.change.test, self.change.kind),
