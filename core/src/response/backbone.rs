@@ -16,5 +16,5 @@ pub(crate) fn read_by_shooting(system: &dyn System, tolerance: f64, omega: f64) 
         to: Some(2.0 * omega),
         ..Request::of(system)
     };
-    by_shooting::further(&request, shooting, Left::Nothing).of_backbone()
+    by_shooting::further(&request, shooting, Left::Nothing, None).of_backbone()
 }

@@ -57,7 +57,7 @@ impl Branch {
         let (shooting, mut request) = by_shooting::of_period(shooting, request, point.orbit.period);
         let verdicts = request.stability;
         // Errors of shooting are known with its maps.
-        request.stability |= following.completes();
+        request.stability |= matches!(following, Following::ContactEquation { .. });
         let asked = shooting::Asked::of(&request, &shooting);
         let mut found = at::at(&asked.problem(value, value)?, self, value)?;
         for point in found.iter_mut().filter(|_| !verdicts) {
@@ -217,6 +217,7 @@ impl Branch {
                 request: Request::of(model),
                 shooting: Shooting::new(),
                 rest: Left::Nothing,
+                otherwise: None,
             },
         };
         self.further = Further {
@@ -283,6 +284,7 @@ impl Branch {
                 request,
                 shooting,
                 rest: Left::Nothing,
+                otherwise: None,
             });
         }
         // A branch may pass from orbits with a symmetry to others.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::by_shooting;
 use super::following::{Following, begin};
-use super::otherwise::Otherwise;
+use super::in_turn::Otherwise;
 use super::sealed::Follow;
 use crate::branches::branch::{Branch, Further};
 use crate::branches::point::{Event, Point};

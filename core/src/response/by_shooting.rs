@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::both_ways::{BothWays, Part, Way};
 use super::following::{Following, Left, begin};
+use super::in_turn::Otherwise;
 use super::sealed::Follow;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::{Branch, Further, Source};
@@ -34,11 +35,7 @@ impl Follow for Shooting {
     }
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
-        let (range, problem) = Asked::of(request, self).ranged()?;
-        let guess = guess(request, range[0])?;
-        begin(request, || further(request, *self, Left::Nothing))?;
-        let followed = compute::branch(&problem, &guess, range, visit)?;
-        Ok(with_request(followed, request, *self))
+        run(request, *self, None, visit)
     }
 
     fn switch(
@@ -53,15 +50,36 @@ impl Follow for Shooting {
         let (shooting, request) = of_period(*self, request, period);
         let (range, problem) = Asked::of(&request, &shooting).ranged()?;
         let event = with_states(&problem, event);
-        begin(&request, || further(&request, shooting, Left::Nothing))?;
+        begin(&request, || {
+            further(&request, shooting, Left::Nothing, None)
+        })?;
         let followed = compute::branch_at(&problem, &event, side.sign(), range, visit)?;
-        Ok(with_request(followed, &request, shooting))
+        Ok(with_request(followed, &request, shooting, None))
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
         let both = BothWays::through(request, value)?;
         both_ways(request, *self, None, &both, visit)
     }
+}
+
+/// The branch from one end of the range to the other, and what is tried where it leads no further.
+///
+/// # Errors
+/// If the request is not usable, or there is no first orbit.
+pub(super) fn run(
+    request: &Request,
+    shooting: Shooting,
+    otherwise: Option<Otherwise>,
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    let (range, problem) = Asked::of(request, &shooting).ranged()?;
+    let guess = guess(request, range[0])?;
+    begin(request, || {
+        further(request, shooting, Left::Nothing, otherwise)
+    })?;
+    let followed = compute::branch(&problem, &guess, range, visit)?;
+    Ok(with_request(followed, request, shooting, otherwise))
 }
 
 /// The branch through the orbit at a value, or what is left of it.
@@ -95,7 +113,7 @@ pub(super) fn both_ways(
     let (branch, left) = both.follow(known, &request.cancel, follow)?;
     let left = Left::BothWays(Box::new(left));
     Ok(Branch {
-        further: further(request, shooting, left),
+        further: further(request, shooting, left, None),
         ..branch
     })
 }
@@ -107,14 +125,17 @@ pub(super) fn both_ways(
 pub(super) fn resume(
     request: &Request,
     shooting: Shooting,
+    otherwise: Option<Otherwise>,
     branch: &Branch,
     rest: &Rest,
     visit: See<'_>,
 ) -> Result<Branch, Error> {
     let (range, problem) = Asked::of(request, &shooting).ranged()?;
-    begin(request, || further(request, shooting, Left::Nothing))?;
+    begin(request, || {
+        further(request, shooting, Left::Nothing, otherwise)
+    })?;
     let followed = compute::resume(&problem, branch, rest, range, visit)?;
-    Ok(with_request(followed, request, shooting))
+    Ok(with_request(followed, request, shooting, otherwise))
 }
 
 /// The second parameter of a curve, and its range.
@@ -256,20 +277,31 @@ fn balanced(request: &Request, value: f64) -> Result<Point, Error> {
 /// Accuracy of a first orbit that is corrected afterwards.
 const GUESSED: f64 = 1e-6;
 
-fn with_request(followed: Followed, request: &Request, shooting: Shooting) -> Branch {
+fn with_request(
+    followed: Followed,
+    request: &Request,
+    shooting: Shooting,
+    otherwise: Option<Otherwise>,
+) -> Branch {
     let Followed { branch, rest } = followed;
     Branch {
-        further: further(request, shooting, Left::one_way(rest)),
+        further: further(request, shooting, Left::one_way(rest), otherwise),
         ..branch
     }
 }
 
 /// What it takes to go on with a branch.
-pub(super) fn further(request: &Request, shooting: Shooting, rest: Left<Rest>) -> Further {
+pub(super) fn further(
+    request: &Request,
+    shooting: Shooting,
+    rest: Left<Rest>,
+    otherwise: Option<Otherwise>,
+) -> Further {
     let following = Following::Shooting {
         request: request.afterwards(),
         shooting,
         rest,
+        otherwise,
     };
     Further::of(Arc::clone(&request.system), Arc::new(following))
 }

@@ -11,10 +11,10 @@
 //! The contact equation has no equation for a system that nothing holds, may miss a first orbit, and may end where its equations fit no
 //! further orbit. There the balance is tried, which was asked for every branch before there was a choice.
 
+use super::in_turn::{Either, First};
 use super::kind::OrbitMethodKind;
-use super::otherwise::Either;
 use super::sealed::Follow;
-use super::steep::Steep;
+use super::steep::{is_steep, is_unbounded};
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::Branch;
 use crate::branches::point::{Event, Point};
@@ -23,7 +23,7 @@ use crate::branches::request::Request;
 use crate::contact_equation::ContactEquation;
 use crate::error::Error;
 use crate::event::Side;
-use crate::law::{Exponent, Law, LawFacts, On, PieceFacts, Quantity, Variation};
+use crate::law::{Law, LawFacts, On, PieceFacts, Variation};
 use crate::laws::single::{self, Single};
 use crate::model::layout::Layout;
 use crate::orbit::observe::Accuracy;
@@ -45,8 +45,8 @@ const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 /// [asked for](crate::FrequencyResponse::by): the [contact equation](ContactEquation) where a law opens, that is has a piece without force, or
 /// has a corner or a jump at a level, and the [harmonic balance](HarmonicBalance) where every force is smooth. At a tolerance of 1e-8 or below it
 /// is the contact equation wherever a force is another function on the other side of a level. Where the stiffness of a law is unbounded on both
-/// sides of a level, as of `sgn(x)*|x|^0.6`, it is [shooting](Shooting). Where the contact equation has no equations for the
-/// system, or one of both finds no first orbit or leads no further, the balance is tried: [`Branch::method`] says what a branch
+/// sides of a level, as of `sgn(x)*|x|^0.6`, it is [shooting](Shooting). Where either has no equations for the
+/// system, finds no first orbit, or leads no further, the balance is tried: [`Branch::method`] says what a branch
 /// was followed by.
 ///
 /// One orbit by itself is one of the balance, which the other methods would begin with.
@@ -242,23 +242,6 @@ fn changes(law: &dyn Law, arguments: &[f64]) -> bool {
     })
 }
 
-/// Whether a derivative by the gap is unbounded below a level, and above it.
-fn is_unbounded(law: &LawFacts, level: usize, arguments: &[f64]) -> [bool; 2] {
-    let below = law.pieces[level].terms.iter();
-    let mut below = below.map(|term| (term.of, term.upper));
-    let above = law.pieces[level + 1].terms.iter();
-    let mut above = above.map(|term| (term.of, term.lower));
-    let unbounded = |(of, exponent): (Quantity, Exponent)| {
-        of == Quantity::ByGap && exponent.value(arguments) < 0.0
-    };
-    [below.any(unbounded), above.any(unbounded)]
-}
-
-/// Whether a derivative by the gap is unbounded on both sides of a level.
-fn is_steep(law: &LawFacts, arguments: &[f64]) -> bool {
-    (0..law.levels.len()).any(|level| is_unbounded(law, level, arguments) == [true; 2])
-}
-
 /// Whether two limits are not one number up to rounding; what is unbounded is none.
 fn differ(below: f64, above: f64) -> bool {
     let size = below.abs().max(above.abs());
@@ -302,13 +285,13 @@ impl Chosen {
         };
         match choice {
             Choice::HarmonicBalance => find(&self.balance),
-            Choice::Shooting { .. } => find(&Steep {
-                shooting: Shooting::new().accurate_in(accuracy),
-                balance,
-            }),
+            Choice::Shooting { .. } => {
+                let shooting = Shooting::new().accurate_in(accuracy);
+                find(&Either::of(First::Shooting(shooting), balance))
+            }
             Choice::ContactEquation { .. } | Choice::ToManyDigits { .. } => {
                 let equation = ContactEquation::new().accurate_in(accuracy);
-                find(&Either::of(equation, balance))
+                find(&Either::of(First::ContactEquation(equation), balance))
             }
         }
     }

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::both_ways::BothWays;
+use super::in_turn::{Either, First, Otherwise};
 use super::kind::OrbitMethodKind;
-use super::otherwise::{Either, Otherwise};
 use super::sealed::Follow;
 use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
@@ -28,6 +28,8 @@ pub(super) enum Following {
         request: Request,
         shooting: Shooting,
         rest: Left<shooting::Rest>,
+        /// What is tried where it leads no further; nothing where shooting was asked for.
+        otherwise: Option<Otherwise>,
     },
     ContactEquation {
         request: Request,
@@ -38,8 +40,20 @@ pub(super) enum Following {
     },
 }
 
-/// What the method gives that followed a branch.
+/// What the method gives that followed a branch, or the balance where that is tried otherwise.
 pub(super) fn by_any(
+    following: &Following,
+    bifurcations: Option<bool>,
+    follow: impl FnOnce(&dyn Follow) -> Result<Branch, Error>,
+) -> Result<Branch, Error> {
+    match following.either() {
+        Some(either) => follow(&either.bifurcations(bifurcations)),
+        None => by_one(following, bifurcations, follow),
+    }
+}
+
+/// What the method gives alone that followed a branch.
+pub(super) fn by_one(
     following: &Following,
     bifurcations: Option<bool>,
     follow: impl FnOnce(&dyn Follow) -> Result<Branch, Error>,
@@ -50,14 +64,6 @@ pub(super) fn by_any(
             follow(&balance.bifurcations(wanted))
         }
         Following::Shooting { shooting, .. } => follow(shooting),
-        Following::ContactEquation {
-            equation,
-            otherwise: Some(Otherwise { balance, .. }),
-            ..
-        } => {
-            let wanted = bifurcations.unwrap_or(balance.bifurcations);
-            follow(&Either::of(*equation, balance.bifurcations(wanted)))
-        }
         Following::ContactEquation { equation, .. } => follow(equation),
     }
 }
@@ -123,9 +129,25 @@ impl Following {
         }
     }
 
-    /// Whether single orbits are completed.
-    pub(super) fn completes(&self) -> bool {
-        matches!(self, Self::ContactEquation { .. })
+    /// What is tried where the method leads no further.
+    pub(super) fn otherwise(&self) -> Option<Otherwise> {
+        match self {
+            Self::Balance { .. } => None,
+            Self::Shooting { otherwise, .. } | Self::ContactEquation { otherwise, .. } => {
+                *otherwise
+            }
+        }
+    }
+
+    /// The method with what is tried otherwise, where there is something.
+    pub(super) fn either(&self) -> Option<Either> {
+        let first = match self {
+            Self::Balance { .. } => return None,
+            Self::Shooting { shooting, .. } => First::Shooting(*shooting),
+            Self::ContactEquation { equation, .. } => First::ContactEquation(*equation),
+        };
+        let otherwise = self.otherwise()?;
+        Some(Either::of(first, otherwise.balance))
     }
 
     /// By which motions in time are computed.

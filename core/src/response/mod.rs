@@ -11,7 +11,6 @@ mod following;
 mod in_turn;
 mod kind;
 mod multipliers;
-mod otherwise;
 mod reading;
 #[cfg(feature = "serde")]
 mod request_in_file;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::both_ways::BothWays;
 use super::following::{Following, Left};
-use super::otherwise::Otherwise;
+use super::in_turn::Otherwise;
 use crate::balance::resolution::Chooser;
 use crate::balance::{Parity, Resolution};
 use crate::balance_branch::check::Asked;
@@ -43,6 +43,8 @@ enum Method {
         rest: Option<Box<shooting::Rest>>,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         both_ways: Option<Box<BothWays<shooting::Rest>>>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        otherwise: Option<Otherwise>,
     },
     ContactEquation {
         options: ContactEquation,
@@ -89,12 +91,18 @@ impl Following {
                         both_ways,
                     }
                 }
-                Self::Shooting { shooting, rest, .. } => {
+                Self::Shooting {
+                    shooting,
+                    rest,
+                    otherwise,
+                    ..
+                } => {
                     let (rest, both_ways) = rest.apart();
                     Method::Shooting {
                         options: *shooting,
                         rest,
                         both_ways,
+                        otherwise: *otherwise,
                     }
                 }
                 Self::ContactEquation {
@@ -149,12 +157,14 @@ impl Following {
                 options: shooting,
                 rest,
                 both_ways,
+                otherwise,
             } => {
                 shooting::Asked::of(&request, &shooting).ranged()?;
                 Ok(Self::Shooting {
                     request,
                     shooting,
                     rest: Left::of(rest, both_ways),
+                    otherwise,
                 })
             }
             Method::ContactEquation {

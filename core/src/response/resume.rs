@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::both_ways::{begins_at, is_left};
-use super::following::{Following, Left, by_any};
-use super::otherwise::{Either, Otherwise};
+use super::following::{Following, Left, by_any, by_one};
+use super::in_turn::Either;
 use super::sealed::Follow;
 use super::{by_balance, by_contact_equation, by_shooting};
 use crate::balance_branch::check::Asked;
@@ -214,6 +214,10 @@ impl Resume<'_> {
         visit: See<'_>,
     ) -> Result<Branch, Error> {
         let branch = self.branch;
+        let lost = following.otherwise().and_then(|otherwise| otherwise.lost);
+        if let Some((either, lost)) = following.either().zip(lost) {
+            return self.by_balance(request, either, lost, visit);
+        }
         let resumed = match following {
             Following::Balance {
                 context,
@@ -236,8 +240,12 @@ impl Resume<'_> {
             Following::Shooting {
                 shooting,
                 rest: Left::OneWay(rest),
+                otherwise,
                 ..
-            } => by_shooting::resume(request, *shooting, branch, rest, &mut *visit)?,
+            } => {
+                let (shooting, other) = (*shooting, *otherwise);
+                by_shooting::resume(request, shooting, other, branch, rest, &mut *visit)?
+            }
             Following::Shooting {
                 shooting,
                 rest: Left::BothWays(both),
@@ -245,14 +253,6 @@ impl Resume<'_> {
             } if is_left(branch) => {
                 self.unkept()?;
                 by_shooting::both_ways(request, *shooting, Some(branch), both, &mut *visit)?
-            }
-            Following::ContactEquation {
-                equation,
-                otherwise: Some(otherwise),
-                ..
-            } if otherwise.lost.is_some() => {
-                let either = Either::of(*equation, otherwise.balance);
-                return self.by_balance(request, either, otherwise.lost, visit);
             }
             Following::ContactEquation {
                 equation,
@@ -269,7 +269,7 @@ impl Resume<'_> {
         Ok(resumed.after(branch))
     }
 
-    /// What the balance finds in place of a branch by the contact equation that ended so, or is left of it.
+    /// What the balance finds in place of a branch that ended so by the first method, or is left of it.
     ///
     /// # Errors
     /// If what is kept cannot be begun with again.
@@ -277,11 +277,11 @@ impl Resume<'_> {
         &self,
         request: &Request,
         either: Either,
-        stopped: Option<Stop>,
+        stopped: Stop,
         visit: See<'_>,
     ) -> Result<Branch, Error> {
         let lost = Branch {
-            stopped: stopped.unwrap_or(self.branch.stopped),
+            stopped,
             ..self.branch.clone()
         };
         if let Some(keep) = &request.keep {
@@ -339,11 +339,8 @@ impl Resume<'_> {
             max_points: request.max_points.saturating_sub(has - 1).max(2),
             ..whole.clone()
         };
-        let on = match following {
-            // The balance is not tried for a part of the branch.
-            Following::ContactEquation { equation, .. } => equation.run(&request, &mut *visit),
-            _ => by_any(following, None, |method| method.run(&request, &mut *visit)),
-        };
+        // The balance is not tried for a part of the branch.
+        let on = by_one(following, None, |method| method.run(&request, &mut *visit));
         let longer = on.map(|on| self.branch.with(on));
         or_otherwise(following, &whole, longer, visit)
     }
@@ -417,7 +414,7 @@ impl Resume<'_> {
     }
 }
 
-/// A branch, or what is tried where the contact equation led no further on it.
+/// A branch, or what is tried where the first method led no further on it.
 ///
 /// # Errors
 /// Those of the balance, where there is no branch.
@@ -427,12 +424,8 @@ fn or_otherwise(
     found: Result<Branch, Error>,
     visit: See<'_>,
 ) -> Result<Branch, Error> {
-    match following {
-        Following::ContactEquation {
-            equation,
-            otherwise: Some(Otherwise { balance, .. }),
-            ..
-        } => Either::of(*equation, *balance).or_balance(request, found, visit),
-        _ => found,
+    match following.either() {
+        Some(either) => either.or_balance(request, found, visit),
+        None => found,
     }
 }

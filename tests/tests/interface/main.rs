@@ -14,6 +14,7 @@ mod messages;
 mod outputs;
 mod owned;
 mod resumed;
+mod steep;
 mod structure;
 mod text;
 mod whole;

@@ -1,56 +1,106 @@
-//! The contact equation, and the harmonic balance where it leads no further.
+//! A method, and the harmonic balance where it leads no further.
 //!
-//! What the contact equation has found stands until the balance is whole or comes farther: in memory, and in a file where the branch is
-//! kept. So whatever interrupts it, it goes on to what an uninterrupted run gives: by the contact equation as long as that is not lost,
+//! What the first method has found stands until the balance is whole or comes farther: in memory, and in a file where the branch is
+//! kept. So whatever interrupts it, it goes on to what an uninterrupted run gives: by the first method as long as that is not lost,
 //! then by a balance from the first orbit on, and by the same balance where that has come farther already.
 
+mod farther;
 #[cfg(test)]
 mod tests;
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-use super::by_contact_equation;
-use super::in_turn::{first_found, may_break};
 use super::sealed::Follow;
+use super::{by_contact_equation, by_shooting};
+use crate::balance::Parity;
+use crate::balance_branch::check::Asked;
 use crate::balance_branch::options::HarmonicBalance;
-use crate::branches::branch::{Branch, Further, Model};
-use crate::branches::checkpoint::{Keep, Rest};
+use crate::branches::branch::{Branch, Further};
+use crate::branches::checkpoint::Keep;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::{Progress, See, Stage};
-use crate::branches::record::Kept;
 use crate::branches::request::Request;
 use crate::contact_equation::ContactEquation;
 use crate::continuation::stop::Stop;
 use crate::error::Error;
 use crate::event::Side;
 use crate::orbit::observe::Accuracy;
+use crate::response::following::Left;
+use crate::shooting::Shooting;
+use farther::Farther;
 
-/// What is tried where the contact equation leads no further.
+/// What is tried where the first method leads no further.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Otherwise {
     pub(super) balance: HarmonicBalance,
-    /// How the contact equation ended, where the balance was tried and interrupted before it came as far.
+    /// How the first method ended, where the balance was tried and interrupted before it came as far.
     pub(super) lost: Option<Stop>,
 }
 
-/// The contact equation, and a balance.
+/// The method that is asked first.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum First {
+    ContactEquation(ContactEquation),
+    Shooting(Shooting),
+}
+
+impl First {
+    fn method(&self) -> &dyn Follow {
+        match self {
+            Self::ContactEquation(equation) => equation,
+            Self::Shooting(shooting) => shooting,
+        }
+    }
+
+    /// The branch from one end of the range to the other, which knows what is tried where it is lost.
+    fn run(self, request: &Request, otherwise: Otherwise, visit: See<'_>) -> Result<Branch, Error> {
+        let otherwise = Some(otherwise);
+        match self {
+            Self::ContactEquation(equation) => {
+                by_contact_equation::run(request, equation, otherwise, visit)
+            }
+            Self::Shooting(shooting) => by_shooting::run(request, shooting, otherwise, visit),
+        }
+    }
+
+    /// What it takes to go on with a branch that is at its end.
+    fn further(self, request: &Request, otherwise: Otherwise) -> Further {
+        let otherwise = Some(otherwise);
+        match self {
+            Self::ContactEquation(equation) => {
+                by_contact_equation::further(request, equation, None, otherwise)
+            }
+            Self::Shooting(shooting) => {
+                by_shooting::further(request, shooting, Left::Nothing, otherwise)
+            }
+        }
+    }
+}
+
+/// A method, and a balance.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Either {
-    equation: ContactEquation,
+    first: First,
     balance: HarmonicBalance,
 }
 
 impl Follow for Either {
     fn accurate_in(self, accuracy: Accuracy) -> Self {
+        let first = match self.first {
+            First::ContactEquation(equation) => {
+                First::ContactEquation(equation.accurate_in(accuracy))
+            }
+            First::Shooting(shooting) => First::Shooting(shooting.accurate_in(accuracy)),
+        };
         Self {
-            equation: self.equation.accurate_in(accuracy),
+            first,
             balance: self.balance.accurate_in(accuracy),
         }
     }
 
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
-        // The contact equation begins with an orbit of the balance.
+        // Both methods begin with an orbit of the balance.
         self.balance.orbit(request, value)
     }
 
@@ -58,8 +108,7 @@ impl Follow for Either {
         if may_break(request, &self.balance) {
             return self.balance.run(request, visit);
         }
-        let otherwise = Some(self.otherwise(None));
-        let found = by_contact_equation::run(request, self.equation, otherwise, &mut *visit);
+        let found = self.first.run(request, self.otherwise(None), &mut *visit);
         self.or_balance(request, found, visit)
     }
 
@@ -85,23 +134,46 @@ impl Follow for Either {
 }
 
 impl Either {
-    pub(super) fn of(equation: ContactEquation, balance: HarmonicBalance) -> Self {
-        Self { equation, balance }
+    pub(super) fn of(first: First, balance: HarmonicBalance) -> Self {
+        Self { first, balance }
     }
 
+    /// The same, where bifurcations are wanted of the balance or not; as it was asked for where nothing is said.
+    pub(super) fn bifurcations(self, wanted: Option<bool>) -> Self {
+        let wanted = wanted.unwrap_or(self.balance.bifurcations);
+        Self {
+            balance: self.balance.bifurcations(wanted),
+            ..self
+        }
+    }
+
+    /// What the first method finds, or else the balance; the other way round where something would stay unseen.
+    ///
+    /// # Errors
+    /// Those of the balance, or of a request that was cancelled.
     fn first_found<T>(
         &self,
         request: &Request,
         unseen: bool,
-        find: impl FnMut(&dyn Follow) -> Result<T, Error>,
+        mut find: impl FnMut(&dyn Follow) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        first_found(&self.equation, &self.balance, request, unseen, find)
+        let mut methods: [&dyn Follow; 2] = [self.first.method(), &self.balance];
+        if unseen {
+            methods.reverse();
+        }
+        let found = find(methods[0]);
+        if found.is_ok() || request.cancel.is_cancelled() {
+            return found;
+        }
+        let other = find(methods[1]);
+        // The balance says why there is none.
+        if unseen { other.or(found) } else { other }
     }
 
-    /// What the contact equation has found, or where it is lost what the balance finds.
+    /// What the first method has found, or where it is lost what the balance finds.
     ///
     /// # Errors
-    /// Those of the balance, where the contact equation has found nothing.
+    /// Those of the balance, where the first method has found nothing.
     pub(super) fn or_balance(
         &self,
         request: &Request,
@@ -155,10 +227,10 @@ impl Either {
 
     /// A lost branch of which the balance is left, which ended so.
     fn left(&self, request: &Request, found: Branch, stopped: Stop) -> Branch {
-        let otherwise = Some(self.otherwise(Some(found.stopped)));
+        let otherwise = self.otherwise(Some(found.stopped));
         Branch {
             stopped,
-            further: by_contact_equation::further(request, self.equation, None, otherwise),
+            further: self.first.further(request, otherwise),
             ..found
         }
     }
@@ -171,8 +243,19 @@ impl Either {
     }
 }
 
+/// Whether orbits may lose a symmetry on a branch unseen: the contact equation and shooting see that by multipliers alone, and the
+/// balance by its equations.
+fn may_break(request: &Request, balance: &HarmonicBalance) -> bool {
+    let asked = Asked::of(request, balance);
+    !request.stability
+        && asked.check().is_ok_and(|(context, _)| {
+            let resolution = context.resolution;
+            resolution.parity == Parity::Odd || resolution.stride > 1
+        })
+}
+
 /// The same of what is followed once more.
-pub(super) fn again(progress: Progress<'_>) -> Progress<'_> {
+fn again(progress: Progress<'_>) -> Progress<'_> {
     let stage = match progress.stage {
         Stage::Branch => Stage::Again,
         other => other,
@@ -181,7 +264,7 @@ pub(super) fn again(progress: Progress<'_>) -> Progress<'_> {
 }
 
 /// Whether a branch ended because nothing further was found.
-pub(super) fn is_lost(branch: &Branch) -> bool {
+fn is_lost(branch: &Branch) -> bool {
     matches!(
         branch.stopped,
         Stop::StepTooShort { .. } | Stop::Motion { .. }
@@ -189,12 +272,12 @@ pub(super) fn is_lost(branch: &Branch) -> bool {
 }
 
 /// Whether a branch ended by itself, and not because somebody or something ended it.
-pub(super) fn is_whole(branch: &Branch) -> bool {
+fn is_whole(branch: &Branch) -> bool {
     !is_lost(branch) && !branch.stopped.can_be_resumed()
 }
 
 /// How far a branch has come from its first orbit.
-pub(super) fn reach(points: &[Point]) -> f64 {
+fn reach(points: &[Point]) -> f64 {
     let values = || points.iter().map(|point| point.value);
     let first = values().next().unwrap_or(f64::NAN);
     values().fold(0.0, |most, value| most.max((value - first).abs()))
@@ -207,88 +290,5 @@ impl Branch {
         self.work += before.work;
         self.elapsed += before.elapsed;
         self
-    }
-}
-
-/// Keeps a branch from where it comes farther than the one that is kept until then.
-#[derive(Debug)]
-struct Farther {
-    by: Arc<dyn Keep>,
-    than: f64,
-    /// What the branch is, until it takes the other one's place.
-    head: Mutex<Option<Head>>,
-}
-
-/// What a branch that is kept begins with.
-#[derive(Debug)]
-struct Head {
-    model: Model,
-    varied: String,
-    further: Further,
-}
-
-impl Farther {
-    fn new(by: &Arc<dyn Keep>, than: f64) -> Arc<Self> {
-        Arc::new(Self {
-            by: Arc::clone(by),
-            than,
-            head: Mutex::default(),
-        })
-    }
-
-    /// Takes the place of what is kept, unless that is done.
-    ///
-    /// # Errors
-    /// If the branch cannot be kept.
-    fn take(&self) -> Result<(), Error> {
-        let mut head = self.head.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(Head {
-            model,
-            varied,
-            further,
-        }) = head.as_ref()
-        {
-            self.by.begin(model, varied, further)?;
-        }
-        *head = None;
-        Ok(())
-    }
-
-    fn waits(&self) -> bool {
-        let head = self.head.lock().unwrap_or_else(PoisonError::into_inner);
-        head.is_some()
-    }
-
-    /// Every orbit is the last one once.
-    fn comes_farther(&self, points: &[Point]) -> bool {
-        let ends = points.first().zip(points.last());
-        ends.is_some_and(|(first, last)| (last.value - first.value).abs() > self.than)
-    }
-}
-
-impl Keep for Farther {
-    fn begin(&self, model: &Model, varied: &str, further: &Further) -> Result<(), Error> {
-        let head = Head {
-            model: model.clone(),
-            varied: varied.to_owned(),
-            further: further.clone(),
-        };
-        *self.head.lock().unwrap_or_else(PoisonError::into_inner) = Some(head);
-        Ok(())
-    }
-
-    fn keep(&self, kept: Kept<'_>, rest: &dyn Rest) -> bool {
-        if self.waits() && !self.comes_farther(kept.points) {
-            return true;
-        }
-        self.take().is_ok() && self.by.keep(kept, rest)
-    }
-
-    fn end(&self, branch: &Branch) -> bool {
-        self.by.end(branch)
-    }
-
-    fn failure(&self) -> Option<Error> {
-        self.by.failure()
     }
 }
