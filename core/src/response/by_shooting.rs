@@ -187,6 +187,7 @@ pub(super) fn completed(
     point: &Point,
 ) -> Result<Point, Error> {
     let (shooting, request) = of_period(shooting, request, point.orbit.period);
+    let shooting = as_known(shooting, &request, point);
     let asked = Asked::of(&request, &shooting);
     asked.belongs(point)?;
     complete::complete(&asked.problem(point.value, point.value)?, point)
@@ -203,6 +204,7 @@ pub(super) fn reading(
     source: Source,
 ) -> Result<Reading, Error> {
     let (shooting, request) = of_period(shooting, request, point.orbit.period);
+    let shooting = as_known(shooting, &request, point);
     let asked = Asked::of(&request, &shooting);
     asked.belongs(point)?;
     let signal = match source {
@@ -223,6 +225,16 @@ pub(super) fn reading(
         series,
         base: point.orbit.base,
     })
+}
+
+/// Shooting whose flow errs by less than what is stated of an orbit.
+fn as_known(shooting: Shooting, request: &Request, point: &Point) -> Shooting {
+    let tolerance = shooting.flow_tolerance(request.tolerance);
+    let known = point
+        .error
+        .map_or(tolerance, |error| FINER * error)
+        .max(FINEST);
+    shooting.tolerance(known.min(tolerance))
 }
 
 /// The same request for orbits of another period, with as many segments as it has periods.
@@ -274,6 +286,10 @@ fn balanced(request: &Request, value: f64) -> Result<Point, Error> {
     HarmonicBalance::new().orbit(&request, value)
 }
 
+/// The flow errs by this part of the stated error of an orbit.
+const FINER: f64 = 0.1;
+/// No flow is asked for more than this.
+const FINEST: f64 = 1e-13;
 /// Accuracy of a first orbit that is corrected afterwards.
 const GUESSED: f64 = 1e-6;
 

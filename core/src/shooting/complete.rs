@@ -5,12 +5,13 @@
 
 use std::f64::consts::TAU;
 
+use super::closed;
+use super::equations::Equations;
 use super::problem::ShootingProblem;
 use super::signals::{Found, Reader};
 use super::start;
 use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
-use crate::branches::observed::Observed;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::error::Error;
@@ -31,6 +32,9 @@ const HARMONICS: usize = 20;
 /// # Errors
 /// If the motion cannot be computed.
 pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point, Error> {
+    let (outputs, closed) = read(problem, point, Asked::Outputs, 0)?;
+    let outputs = outputs.motions();
+    let (given, point) = (point, &closed);
     let coordinates = point.orbit.coordinates;
     let divisor = problem.divisor as usize;
     let samples = sampled(problem, point, SAMPLES * divisor)?;
@@ -71,28 +75,19 @@ pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point
     }
     u.truncate(n);
     observed.switches = point.observed.switches;
-    read_motion(problem, point, &mut observed)?;
+    // Outputs and contacts from the motion itself: forces take more harmonics than positions.
+    observed.outputs = outputs;
+    let (contacts, _) = read(problem, point, Asked::Contacts, 0)?;
+    let period = TAU / point.orbit.base;
+    (observed.contacts, observed.on_pieces) = contacts.contacts(period);
     Ok(Point {
         orbit: Orbit {
             series: u,
-            ..point.orbit.clone()
+            ..given.orbit.clone()
         },
         observed,
-        ..point.clone()
+        ..given.clone()
     })
-}
-
-/// Outputs and contacts from the motion itself: forces take more harmonics than positions.
-fn read_motion(
-    problem: &ShootingProblem,
-    point: &Point,
-    observed: &mut Observed,
-) -> Result<(), Error> {
-    observed.outputs = read(problem, point, Asked::Outputs, 0)?.motions();
-    let contacts = read(problem, point, Asked::Contacts, 0)?;
-    let period = TAU / point.orbit.base;
-    (observed.contacts, observed.on_pieces) = contacts.contacts(period);
-    Ok(())
 }
 
 /// Signals of an orbit of shooting, with the harmonics that [`complete`] keeps.
@@ -105,23 +100,38 @@ pub(crate) fn reading(
     asked: Asked,
 ) -> Result<Vec<Found>, Error> {
     let harmonics = HARMONICS * problem.divisor as usize * point.orbit.period;
-    Ok(read(problem, point, asked, harmonics)?.found())
+    let (reader, _) = read(problem, point, asked, harmonics)?;
+    Ok(reader.found())
 }
 
-/// What is asked for, along the motion from the states of an orbit.
+/// What is asked for, along the motion from the states of an orbit, and the orbit with states from which the motion is [closed](super::closed).
 fn read<'p>(
     problem: &'p ShootingProblem,
     point: &Point,
     asked: Asked,
     harmonics: usize,
-) -> Result<Reader<'p>, Error> {
+) -> Result<(Reader<'p>, Point), Error> {
     let (mut equations, u) = start::of_point(problem, point)?;
     let recurrence = equations.span.recurrence.clone();
-    let mut reader = problem.reader(point.value, asked, &recurrence, harmonics);
     let value = point.value;
-    let traced = equations.trace(&u, &mut |stretch| reader.include(stretch));
-    traced.map_err(|reason| MotionError { value, reason })?;
-    Ok(reader)
+    let along = |equations: &mut Equations, u: &[f64]| {
+        let mut reader = problem.reader(value, asked, &recurrence, harmonics);
+        let traced = equations.trace_closing(u, &mut |stretch| reader.include(stretch));
+        let apart = traced.map_err(|reason| MotionError { value, reason })?;
+        Ok::<_, Error>((reader, apart))
+    };
+    let (reader, apart) = along(&mut equations, &u)?;
+    let mut closed = point.clone();
+    if closed::is_closed(point, apart) {
+        return Ok((reader, closed));
+    }
+    let Some(states) = closed::states(problem, &mut equations, &u, point, apart) else {
+        return Ok((reader, closed));
+    };
+    let u = equations.unknowns_of(&states, value);
+    let (reader, _) = along(&mut equations, &u)?;
+    closed.orbit.states = states;
+    Ok((reader, closed))
 }
 
 /// Positions at equal distances over the period, so many in each period of the declaration, coordinate by coordinate.

@@ -417,6 +417,26 @@ impl Equations {
         }
         Ok(())
     }
+
+    /// The same, and says how far from the beginnings of segments those before them end, of velocities in units of the frequency.
+    ///
+    /// # Errors
+    /// If the motion cannot be continued.
+    pub(super) fn trace_closing(
+        &mut self,
+        u: &[f64],
+        see: &mut dyn FnMut(&dyn Stretch),
+    ) -> Result<f64, FlowError> {
+        let mut residual = vec![0.0; self.unknowns()];
+        self.flow.set(self.frame.variable, u[u.len() - 1])?;
+        for segment in 0..self.span.segments {
+            self.begin(u, segment);
+            self.advance(segment, false, Some(see))?;
+            self.close(u, segment, &mut residual);
+        }
+        let residual = residual.iter().enumerate();
+        Ok(residual.fold(0.0, |most: f64, (i, x)| most.max(x.abs() / self.unit(i))))
+    }
 }
 
 impl Problem for Equations {

@@ -15,6 +15,7 @@ pub(crate) mod at;
 pub(crate) mod bifurcation_curve;
 mod broken_symmetry;
 pub(crate) mod checked;
+mod closed;
 mod codimension_one;
 pub(crate) mod complete;
 pub(crate) mod compute;
