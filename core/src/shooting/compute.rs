@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::error_reference::ErrorReference;
 use super::problem::ShootingProblem;
-use super::rest::Rest;
+use super::resume_state::Rest;
 use super::run::Run;
 use super::start::{First, first};
 use super::switch::{self, Begun};
