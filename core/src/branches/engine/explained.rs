@@ -1,7 +1,7 @@
 //! What is said where multipliers cross the unit circle and no event was located.
 
 use super::Engine;
-use super::touch::AT_ONCE;
+use super::grazing::AT_ONCE;
 use crate::branches::extreme::{Bend, Extreme};
 use crate::branches::moduli;
 use crate::branches::point::Point;

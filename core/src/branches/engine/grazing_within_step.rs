@@ -3,8 +3,8 @@
 //! Both ends show such an extreme on one side of its level. How near it may come in between is told by its distance at three successive
 //! points, as of a test function that may pass zero twice: see (1) of [`inside`](super::inside).
 
+use super::grazing::Gaps;
 use super::inside::{CLOSE, Height, LOOKS, distance, in_doubt};
-use super::touch::Gaps;
 use crate::branches::extreme::Extreme;
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::Step;

@@ -1,14 +1,14 @@
 //! Touches of levels between two points of a branch.
 //!
 //! An extreme that is on the other side of its level at the other end of a step has touched it in between. Extremes that went there and
-//! back are looked for [inside](super::inside_touch), and where extremes appear or disappear near a level, or level crossings do that no
-//! extreme explains, or a touch is not located, the step is halved. Each touch is located by [approaching](super::approach) it.
+//! back are looked for [inside](super::grazing_within_step), and where extremes appear or disappear near a level, or level crossings do that no
+//! extreme explains, or a touch is not located, the step is halved. Each touch is located by [approaching](super::grazing_search) it.
 
 use super::Engine;
-use super::approach::{Approach, Reached, on_the_way};
 use super::explained::Bent;
+use super::grazing_search::{Approach, Reached, on_the_way};
+use super::grazing_within_step::Steps;
 use super::inside::distance;
-use super::inside_touch::Steps;
 use super::seen::Seen;
 use crate::branches::extreme::{
     Bend, Extreme, Passage, appears, crossings, distinct, is_copy, passed,
