@@ -14,7 +14,7 @@
 
 use super::position::Position;
 use super::problem::{AsProblem, Scale};
-use super::step::StepControl;
+use super::step_control::StepControl;
 pub use super::stop::Stop;
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 

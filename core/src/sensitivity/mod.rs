@@ -6,21 +6,21 @@
 //! `places` where it is looked at, `landing` switches, `reader` and `moments` what is read off, `place` and `grazing` how folds and touches
 //! move, `multipliers` and `change` how multipliers do, `critical` where they cross the unit circle.
 
-mod asked;
 mod change;
 mod critical;
 mod cycle;
 mod error;
 mod events;
+mod fold;
 mod grazing;
 mod landing;
 mod moments;
 mod multipliers;
+mod of_branch;
 mod orbit;
-mod place;
-mod places;
 mod reader;
 mod rows;
+mod sample_phases;
 mod scan;
 mod slopes;
 mod uncertain;

@@ -1,7 +1,7 @@
 //! What is read off orbits, row by row.
 
 use super::Missing;
-use super::places::Needs;
+use super::sample_phases::Needs;
 use super::slopes::Asked;
 use crate::branches::branch::{Model, Source};
 use crate::error::Error;

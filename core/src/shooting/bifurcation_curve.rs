@@ -2,20 +2,20 @@
 //!
 //! What is special is looked for by [`special_monitor`](super::special_monitor).
 
+use super::branch_switch::is_crossing;
 use super::codimension_one::{Condition, Curve};
 use super::grazing_condition::GrazingCondition;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
 use super::special_monitor::SpecialMonitor;
 use super::start;
-use super::switch::is_crossing;
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::{Progress, See, Stage};
 use crate::branches::solve;
 use crate::continuation::follow::{Continue, CurvePoint, FollowOptions, Halt, Start, Stop, follow};
 use crate::continuation::newton::Newton;
-use crate::continuation::step::StepControl;
+use crate::continuation::step_control::StepControl;
 use crate::error::Error;
 use crate::event::EventKind;
 use crate::model::request::RequestError;

@@ -13,12 +13,13 @@
 
 pub(crate) mod at;
 pub(crate) mod bifurcation_curve;
+mod branch_switch;
+mod branch_switch_at_crossing;
 mod broken_symmetry;
 pub(crate) mod checked;
 mod codimension_one;
 pub(crate) mod complete;
 pub(crate) mod compute;
-mod crossed;
 mod equations;
 mod error_reference;
 mod events;
@@ -41,8 +42,7 @@ pub(crate) mod signals;
 mod special_monitor;
 mod special_search;
 mod start;
-mod switch;
-pub(crate) mod tested;
+pub(crate) mod test_functions;
 #[cfg(test)]
 mod tests;
 

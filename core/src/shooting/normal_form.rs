@@ -13,10 +13,10 @@
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, sections 4.5 and 9.3 (the generalised flip).
 
+use super::branch_switch::direction;
 use super::codimension_one::Curve;
 use super::equations::Equations;
 use super::problem::ShootingProblem;
-use super::switch::direction;
 use crate::branches::recurrence::SignedPermutation;
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Scale;

@@ -2,7 +2,7 @@
 //! tolerance asks for it.
 
 mod corrected_moduli;
-mod crossed;
+mod crossing_branch;
 mod event_monitor;
 mod folds;
 mod gap_extremes;

@@ -33,7 +33,7 @@ use crate::event::EventKind;
 use crate::numeric::linear::dot;
 use crate::numeric::roots::{self, Place};
 use crate::numeric::spectrum::distance;
-use crate::shooting::tested::{Test, Tests};
+use crate::shooting::test_functions::{Test, Tests};
 
 /// An event is known well enough when more nodes change its value by this part of it.
 const KNOWN: f64 = 2e-10;

@@ -3,6 +3,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::events;
+use crate::branches::branch_start::step_on_other_branch;
 use crate::branches::checkpoint::keep;
 use crate::branches::engine::{Search, Walk};
 use crate::branches::extreme::{self, Extreme};
@@ -13,7 +14,6 @@ use crate::branches::problem::{
 };
 use crate::branches::progress::{Progress, See};
 use crate::branches::record::Record;
-use crate::branches::switch::step_on_other_branch;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::problem::{FIRST, RESOLUTIONS};
 use crate::contact_equation::reading::ReadOrbit;
@@ -24,7 +24,7 @@ use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::event::EventKind;
-use crate::shooting::tested::{self, Tests};
+use crate::shooting::test_functions::{self, Tests};
 
 /// Brackets of an event are narrowed until rounding stops it, or this is reached.
 pub(super) const VANISHED: f64 = 1e-14;
@@ -130,7 +130,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
     pub(in crate::contact_equation) fn new(run: &'b mut Run<'r>, visit: See<'b>) -> Self {
         let watched = if run.problem.asked.stability {
             let skeleton = &run.equations.skeleton;
-            tested::watched(skeleton.recurrence().doubling(), skeleton.order)
+            test_functions::watched(skeleton.recurrence().doubling(), skeleton.order)
         } else {
             Vec::new()
         };
@@ -183,11 +183,12 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
     /// What happens at a zero, if anything does: as by shooting. What it asks (`tests`, `last_error`) is of each method, and test functions
     /// are computed for moduli alone, so that neither can be handed to one function before.
     fn kind(&mut self, zero: &Zero) -> Option<EventKind> {
-        let tested::Test::Modulus(place) = tested::Test::of(zero.change.test) else {
+        let test_functions::Test::Modulus(place) = test_functions::Test::of(zero.change.test)
+        else {
             return Some(zero.change.kind);
         };
         let tells = zero.told || zero.least <= self.last_error();
-        let doubling = self.watched[tested::DOUBLING].kind;
+        let doubling = self.watched[test_functions::DOUBLING].kind;
         let tests = self.tests(&zero.root.located.point);
         tests.seen_by_modulus(place, tells, doubling)
     }
@@ -291,7 +292,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
     }
 
     fn test(&mut self, index: usize, at: &CurvePoint) -> TestValue {
-        TestValue::plain(self.tests(at).value(tested::Test::watched(index)))
+        TestValue::plain(self.tests(at).value(test_functions::Test::watched(index)))
     }
 
     fn slope(&mut self, at: &CurvePoint) -> f64 {
@@ -308,8 +309,8 @@ impl BranchProblem for ContactBranch<'_, '_> {
     }
 
     fn noise(&self, index: usize) -> f64 {
-        match tested::Test::watched(index) {
-            tested::Test::Modulus(_) => self.last_error().min(COARSE),
+        match test_functions::Test::watched(index) {
+            test_functions::Test::Modulus(_) => self.last_error().min(COARSE),
             _ => 0.0,
         }
     }
@@ -320,11 +321,13 @@ impl BranchProblem for ContactBranch<'_, '_> {
 
     fn vanishes(&mut self, change: Change, located: &Located) -> bool {
         let point = &located.point;
-        let unit = match tested::Test::of(change.test) {
-            tested::Test::Slope => point.narrowness(),
-            tested::Test::Bordered => self.run.others(point, 1.0) / point.parameter_slope().abs(),
-            tested::Test::Plus => self.run.others(point, -1.0),
-            tested::Test::Modulus(_) => return located.test.abs() <= self.last_error(),
+        let unit = match test_functions::Test::of(change.test) {
+            test_functions::Test::Slope => point.narrowness(),
+            test_functions::Test::Bordered => {
+                self.run.others(point, 1.0) / point.parameter_slope().abs()
+            }
+            test_functions::Test::Plus => self.run.others(point, -1.0),
+            test_functions::Test::Modulus(_) => return located.test.abs() <= self.last_error(),
         };
         located.test.abs() <= VANISHING * unit
     }

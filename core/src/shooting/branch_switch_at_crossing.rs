@@ -16,13 +16,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::branch_switch::{Begun, FIRST_STEPS};
 use super::equations::Equations;
 use super::problem::ShootingProblem;
 use super::start::{self, First};
-use super::switch::{Begun, FIRST_STEPS};
+use crate::branches::branch_start::BranchSwitch;
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
-use crate::branches::switch::BranchSwitch;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::newton::Newton;

@@ -1,5 +1,5 @@
 //! From an event of one branch onto the branch that begins there. Where branches cross without a symmetry, see
-//! [`crossed`](super::crossed).
+//! [`branch_switch_at_crossing`](super::branch_switch_at_crossing).
 //!
 //! Let `P` be the derivative of the flow over the part of the orbit that is followed, and `S` as in
 //! [`equations`](super::equations). At a period doubling, and where a symmetry breaks, `M = S^-1 P` has the eigenvalue minus
@@ -23,11 +23,11 @@ use super::equations::Equations;
 use super::minimal_period::earlier;
 use super::problem::ShootingProblem;
 use super::start::{self, First};
+use crate::branches::branch_start::BranchSwitch;
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
 use crate::branches::recurrence::SignedPermutation;
 use crate::branches::solve::{Toward, along};
-use crate::branches::switch::BranchSwitch;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Scale;
@@ -62,7 +62,7 @@ pub(super) fn switch_branch(
         value: event.point.value,
     };
     if event.kind == EventKind::BranchPoint || is_crossing(problem, event)? {
-        return super::crossed::switch_branch(problem, event, side, range);
+        return super::branch_switch_at_crossing::switch_branch(problem, event, side, range);
     }
     if !matches!(
         event.kind,
