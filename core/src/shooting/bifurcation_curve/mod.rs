@@ -1,13 +1,21 @@
 //! Following a curve of bifurcations in two parameters, both ways from one of them.
 //!
-//! What is special is looked for by [`special_monitor`](super::special_monitor).
+//! [`codimension_one`] has its equations, with that of a touch in [`grazing_condition`]. What is special on it is told by
+//! [`special_monitor`] and located by [`special_search`]: by the coefficient of the [`normal_form`], or as a [`generalised_flip`].
 
+mod codimension_one;
+mod generalised_flip;
+mod grazing_condition;
+mod normal_form;
+mod special_monitor;
+mod special_search;
+
+use self::codimension_one::{Condition, Curve};
+use self::grazing_condition::GrazingCondition;
+use self::special_monitor::SpecialMonitor;
 use super::branch_switch::is_crossing;
-use super::codimension_one::{Condition, Curve};
-use super::grazing_condition::GrazingCondition;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
-use super::special_monitor::SpecialMonitor;
 use super::start;
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};

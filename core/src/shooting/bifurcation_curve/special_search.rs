@@ -3,15 +3,15 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::codimension_one::{Curve, determinant};
-use super::error_reference::ErrorReference;
 use super::normal_form::CubicCoefficient;
-use super::problem::ShootingProblem;
 use super::special_monitor::{ROUNDING, VANISHED};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::{inside, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{AsProblem, Problem};
 use crate::numeric::spectrum::eigenvalues;
+use crate::shooting::error_reference::ErrorReference;
+use crate::shooting::problem::ShootingProblem;
 
 /// A step over a grazing is divided so many times, at the first of these parts where there is a solution: beside it the equations have the
 /// root of the distance in them.

@@ -11,10 +11,10 @@
 //!
 //! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (grazing).
 
-use super::equations::Equations;
-use super::gap_scan::{self, Extreme, Room};
-use super::problem::ShootingProblem;
 use crate::model::layout::Layout;
+use crate::shooting::equations::Equations;
+use crate::shooting::gap_scan::{self, Extreme, Room};
+use crate::shooting::problem::ShootingProblem;
 use crate::system::{System, Variable};
 use crate::time::gap::Gap;
 

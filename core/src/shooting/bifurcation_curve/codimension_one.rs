@@ -1,7 +1,7 @@
 //! A curve of bifurcations in two parameters, as a problem of continuation.
 //!
 //! The first parameter `lambda` becomes an unknown, and an equation more says that the orbit is a bifurcation: with the map `M`
-//! of [`equations`](super::equations),
+//! of [`equations`](crate::shooting::equations),
 //!
 //! ```text
 //! F(s, lambda; mu) = 0,     g(s, lambda; mu) = det(M -+ I) = 0                                               (1)
@@ -17,12 +17,12 @@
 
 use nalgebra::DMatrix;
 
-use super::equations::Equations;
 use super::grazing_condition::GrazingCondition;
-use super::problem::ShootingProblem;
 use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::problem::Problem;
 use crate::error::Error;
+use crate::shooting::equations::Equations;
+use crate::shooting::problem::ShootingProblem;
 use crate::system::Variable;
 
 /// Steps of differences, relative to what counts as one.

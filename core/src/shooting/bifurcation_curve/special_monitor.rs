@@ -8,21 +8,18 @@
 //! | double: two multipliers are one, or minus one | the product of `mu -+ 1` over all but the nearest |
 //! | degenerate: what begins at a doubling bends neither way | the coefficient of [`normal_form`](super::normal_form) |
 //!
-//! A place is looked for once more by the equations of a [`error_reference`](super::error_reference), and what that changes is its error.
+//! A place is looked for once more by the equations of a [`error_reference`](crate::shooting::error_reference), and what that changes is its error.
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, chapter 9 (bifurcations of codimension two of fixed points).
 
-use super::bifurcation_curve::{Plane, Special, SpecialKind};
 use super::codimension_one::{Condition, Curve};
-use super::extremes;
 use super::generalised_flip::HalfPeriodDifference;
 use super::normal_form::CubicCoefficient;
-use super::problem::ShootingProblem;
-use super::run::{no_orbit, orbit_of};
 use super::special_search::{
     Counted, Criterion, Function, Place, ReferenceCurve, Search, TestFunctions, Tests, apart,
     values,
 };
+use super::{Plane, Special, SpecialKind};
 use crate::branches::moduli::multipliers;
 use crate::branches::observed::{Motion, Observed};
 use crate::branches::point::Point;
@@ -30,6 +27,9 @@ use crate::branches::stability::Stability;
 use crate::continuation::follow::{Continue, CurvePoint, Halt, Outcome, Step, Stop, Visit};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::error::Error;
+use crate::shooting::extremes;
+use crate::shooting::problem::ShootingProblem;
+use crate::shooting::run::{no_orbit, orbit_of};
 use crate::system::Variable;
 use crate::time::{FlowError, Stretch};
 

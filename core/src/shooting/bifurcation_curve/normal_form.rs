@@ -13,14 +13,14 @@
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, sections 4.5 and 9.3 (the generalised flip).
 
-use super::branch_switch::direction;
 use super::codimension_one::Curve;
-use super::equations::Equations;
-use super::problem::ShootingProblem;
 use crate::branches::recurrence::SignedPermutation;
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Scale;
 use crate::error::Error;
+use crate::shooting::branch_switch::direction;
+use crate::shooting::equations::Equations;
+use crate::shooting::problem::ShootingProblem;
 use crate::system::Variable;
 
 /// `e`, in units of the orbit's size: what is left of the next order falls as `e^4`, and the error of the flow grows as `e^-2`.

@@ -19,12 +19,12 @@
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, section 9.3 (generalised flip: the curve of folds of twice the
 //! period, and its order of contact).
 
-use super::bifurcation_curve::{Special, SpecialKind};
 use super::codimension_one::Curve;
-use super::equations::Equations;
 use super::special_monitor::{ROUNDING, SpecialMonitor};
 use super::special_search::apart;
+use super::{Special, SpecialKind};
 use crate::continuation::follow::{CurvePoint, Step};
+use crate::shooting::equations::Equations;
 
 /// Two differences point opposite ways if the cosine of their angle is below this.
 const OPPOSITE: f64 = -0.9;
