@@ -2,7 +2,8 @@
 //!
 //! An extreme that is on the other side of its level at the other end of a step has touched it in between. Extremes that went there and
 //! back are looked for [inside](super::grazing_within_step), and where extremes appear or disappear near a level, or level crossings do that no
-//! extreme explains, or a touch is not located, the step is halved. Each touch is located by [approaching](super::grazing_search) it.
+//! extreme explains, or a touch is not located, the step is halved. Each touch is located by [approaching](super::grazing_search) it, and kept
+//! ([`Bent::kept`]): the method reads the orbit there ([`BranchProblem::keep_touch`]).
 
 use super::Engine;
 use super::explained::Bent;
@@ -221,6 +222,29 @@ impl Engine {
         let gaps = Gaps::at(problem, point)?;
         self.remember_gaps(gaps.clone());
         Some(gaps)
+    }
+}
+
+impl Bent {
+    /// Has a touch kept, of an orbit with these extremes. Says what bends there, if anything does and it is an event.
+    pub(super) fn kept(
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        step: Step<'_>,
+        touch: &Touch,
+        extremes: &[Extreme],
+    ) -> Option<Self> {
+        let known = problem.record().events.len();
+        problem.keep_touch(newton, step, touch);
+        let event = problem.record().events.get(known)?;
+        let touching = extremes.iter();
+        let touching = touching.filter(|extreme| extreme.above.abs() <= AT_ONCE);
+        let bend = touching.fold(touch.extreme.bend, |bend, extreme| bend.max(extreme.bend));
+        (bend != Bend::Smooth).then_some(Self {
+            after: touch.after,
+            value: event.point.value,
+            bend,
+        })
     }
 }
 
