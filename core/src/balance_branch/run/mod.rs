@@ -6,6 +6,7 @@ mod crossing_branch;
 mod event_monitor;
 mod folds;
 mod gap_extremes;
+mod joined;
 mod method;
 mod resume_state;
 
