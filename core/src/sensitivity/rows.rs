@@ -2,7 +2,7 @@
 
 use super::Missing;
 use super::sample_phases::Needs;
-use super::slopes::Asked;
+use super::slopes::signals::Asked;
 use crate::branches::branch::{Model, Source};
 use crate::error::Error;
 use crate::model::request::RequestError;
