@@ -7,7 +7,7 @@
 //! `equations` has the equations, `start` the first orbit, `sampled_states` one from a balance, `minimal_period` whether an orbit comes back earlier.
 //! `run` takes each orbit of a branch: its multipliers and their stated errors (`Run::read`), by another flow of `error_reference`, its extremes
 //! (`extremes`, `gap_extremes`), and what its outputs are (`complete`, `signals`, `output_error`). `method` is what the engine of branches asks for,
-//! `test_functions` what they are called, `events` what is recorded at their zeros. `at`, `branch_switch` and `branch_switch_at_crossing` answer
+//! `test_functions` are what tells events, `events` what is recorded at their zeros. `at`, `branch_switch` and `branch_switch_at_crossing` answer
 //! what a branch is asked afterwards (`past_fold`, `broken_symmetry`), `resume_state` is what one goes on from. The folder `bifurcation_curve`
 //! follows an event in two parameters.
 
