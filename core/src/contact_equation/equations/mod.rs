@@ -33,8 +33,8 @@
 //! section 2.2, in causal form; collocation at Gauss nodes, Hairer, Norsett and Wanner (1993), section II.7.
 
 mod eliminated;
-mod integrals;
-mod pass;
+pub(super) mod integrals;
+pub(super) mod pass;
 pub(super) mod passed;
 pub(super) mod setting;
 mod targets;
