@@ -13,7 +13,7 @@ use crate::branches::point::Event;
 use crate::branches::request::{Guess, Request};
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
-use crate::continuation::step;
+use crate::continuation::step_control;
 use crate::error::Error;
 use crate::model::error::ModelError;
 use crate::model::layout::{ContactLayout, Layout};
@@ -90,8 +90,8 @@ impl<'r> Asked<'r> {
         let options = FollowOptions {
             from,
             to,
-            points: step::max_points(self.request.max_points)?,
-            steps: step::largest_step(self.request.largest_step)?,
+            points: step_control::max_points(self.request.max_points)?,
+            steps: step_control::largest_step(self.request.largest_step)?,
             newton,
         };
         let chooser = self.chooser(resolution);

@@ -1,5 +1,6 @@
 //! Branches of orbits by harmonic balance, as the [engine](crate::branches::engine) follows them.
 
+pub(crate) mod branch_switch;
 pub(crate) mod check;
 pub(crate) mod context;
 pub(crate) mod motion;
@@ -7,4 +8,3 @@ pub(crate) mod options;
 mod output_error;
 pub(crate) mod point_evaluator;
 pub(crate) mod run;
-pub(crate) mod switch;

@@ -9,7 +9,7 @@ use crate::attractors::basin::{Basin, Basins, Moving, Visit};
 use crate::bifurcation::error::BifurcationError;
 use crate::branches::progress::Progress;
 use crate::cancel::Cancel;
-use crate::continuation::step;
+use crate::continuation::step_control;
 use crate::error::{Error, ErrorKind};
 use crate::model::request::RequestError;
 use crate::model::validate;
@@ -357,7 +357,7 @@ impl<M: OrbitMethod> Bifurcations<M> {
             settling.check()?;
         }
         validate::option("max_branches", branches, 1.0..=1e6, "must be 1 or more")?;
-        step::max_points(self.points).map(|_| ())
+        step_control::max_points(self.points).map(|_| ())
     }
 
     /// The range with what lies beyond its ends, as far as that is admissible.

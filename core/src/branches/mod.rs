@@ -1,6 +1,7 @@
 //! Branches of periodic orbits: as data, and what follows them, whichever method computes the orbits.
 
 pub(crate) mod branch;
+pub(crate) mod branch_start;
 pub(crate) mod checkpoint;
 pub(crate) mod engine;
 pub(crate) mod error;
@@ -17,6 +18,5 @@ pub(crate) mod recurrence;
 pub(crate) mod request;
 pub(crate) mod solve;
 pub(crate) mod stability;
-pub(crate) mod switch;
 pub(crate) mod value;
 pub(crate) mod winding;

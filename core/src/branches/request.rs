@@ -7,7 +7,7 @@ use super::checkpoint::Keep;
 use super::error::unless_cancelled;
 use super::orbit::Orbit;
 use crate::cancel::Cancel;
-use crate::continuation::step::StepControl;
+use crate::continuation::step_control::StepControl;
 use crate::error::Error;
 use crate::model::request::RequestError;
 use crate::model::{self, validate};

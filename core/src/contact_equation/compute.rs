@@ -3,25 +3,25 @@
 
 use std::time::Instant;
 
+use super::branch::guess::Guess;
+use super::branch::method::{ContactBranch, REFUSALS};
+use super::branch::resume_state::Rest;
 use super::equations::Equations;
-use super::fits::Fits;
-use super::gaps::Gaps;
-use super::guess::Guess;
-use super::method::{ContactBranch, REFUSALS};
-use super::plan::{Frame, Plan};
+use super::equations::setting::Frame;
+use super::orbit::gaps::Gaps;
 use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
-use super::regular::Compared;
-use super::rest::Rest;
+use super::reading::minimal_period::Compared;
 use super::run::Run;
+use super::switches::fits::Fits;
+use super::switches::plan::Plan;
 use crate::branches::branch::Branch;
-use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::observed::Motion;
 use crate::branches::point::Point;
 use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
 use crate::branches::recurrence::Recurrence;
-use crate::branches::solve;
+use crate::branches::{engine, solve};
 use crate::continuation::follow::{CurvePoint, FollowOptions, Start, Stop};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::error::Error;

@@ -1,7 +1,7 @@
 //! What a computation by the contact equation works with: checked, and the same for all orbits of a branch.
 
-use super::equations::Setting;
-use super::placement::Resolution;
+use super::equations::setting::Setting;
+use super::skeleton::placement::Resolution;
 use crate::shooting::problem::ShootingProblem;
 
 /// Nodes of a stretch and panels of a whole period, coarser ones first.

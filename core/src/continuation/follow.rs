@@ -1,5 +1,9 @@
 //! Pseudo-arclength continuation: parabolic predictor, bordered corrector.
 //!
+//! Here are the data, points of the curve and where a walk stands, and the loop that goes from point to point. Predictor and corrector are in
+//! [`stepper`](super::stepper), how long steps are in [`step_control`](super::step_control), where a walk is between two steps and whether it
+//! ends in [`position`](super::position).
+//!
 //! From a solution `u_0` with unit tangent `t_0`, a step of length `s` solves
 //!
 //! ```text
@@ -14,7 +18,7 @@
 
 use super::position::Position;
 use super::problem::{AsProblem, Scale};
-use super::step::StepControl;
+use super::step_control::StepControl;
 pub use super::stop::Stop;
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 

@@ -10,7 +10,7 @@ pub(crate) mod follow;
 pub(crate) mod locate;
 mod position;
 pub mod problem;
-pub(crate) mod step;
+pub(crate) mod step_control;
 mod stepper;
 pub(crate) mod stop;
 #[cfg(test)]

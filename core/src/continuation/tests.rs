@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::crossing::locate_crossing;
 use super::follow::{CurvePoint, FollowOptions, Outcome, Start, Step, Stop, Visit, follow};
 use super::problem::{Problem, Scale};
-use super::step::StepControl;
+use super::step_control::StepControl;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
 

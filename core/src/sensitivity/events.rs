@@ -11,12 +11,12 @@
 use super::critical::{self, Crosses};
 use super::cycle::Cycle;
 use super::error::SensitivityError;
+use super::fold::{self, Moving};
 use super::grazing;
 use super::moments::Slope;
 use super::orbit::{
     BESIDE, FINE, ROUNDINGS, Sensitive, Start, apart, condition, finite, unless_cancelled,
 };
-use super::place::{self, Moving};
 use super::rows::Row;
 use super::{Measured, Missing, Sensitivities};
 use crate::branches::point::Event;
@@ -44,7 +44,7 @@ impl Sensitive<'_> {
                 critical::crossing(cycle, start.clone(), crosses, &others)
             })?,
             (EventKind::Fold, _) => self.by_both(&mut cycle, &start, &|cycle, start| {
-                place::fold(cycle, &start.states, start.value, &others)
+                fold::fold(cycle, &start.states, start.value, &others)
             })?,
             (EventKind::Grazing { .. }, _) => {
                 self.by_both(&mut cycle, &start, &|cycle, start| {

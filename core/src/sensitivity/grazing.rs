@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 use super::cycle::{Cycle, Stop};
 use super::error::SensitivityError;
+use super::fold::{LAST, Moving, STEPS};
 use super::orbit::Start;
-use super::place::{LAST, Moving, STEPS};
 use super::scan::{Scan, Turn};
 use super::slopes::{Direction, Slopes};
 use crate::system::{System, Variable};

@@ -1,26 +1,26 @@
 //! Derivatives of what is read off orbits, and of where events are, by the frequency and by every parameter of the declaration.
 //!
 //! An orbit by whatever method is taken as a state that returns to itself, and everything is differentiated along its motion in time:
-//! exponents, levels, the motion of switches, one-sided limits at them. `asked` has the questions, `rows` what is read off, `orbit` and
+//! exponents, levels, the motion of switches, one-sided limits at them. `of_branch` has the questions, `rows` what is read off, `orbit` and
 //! `events` the answers. `cycle` has the equations, `slopes` signals at one instant, `scan` where an orbit switches and has extremes,
-//! `places` where it is looked at, `landing` switches, `reader` and `moments` what is read off, `place` and `grazing` how folds and touches
+//! `sample_phases` where it is looked at, `landing` switches, `reader` and `moments` what is read off, `fold` and `grazing` how folds and touches
 //! move, `multipliers` and `change` how multipliers do, `critical` where they cross the unit circle.
 
-mod asked;
 mod change;
 mod critical;
 mod cycle;
 mod error;
 mod events;
+mod fold;
 mod grazing;
 mod landing;
 mod moments;
 mod multipliers;
+mod of_branch;
 mod orbit;
-mod place;
-mod places;
 mod reader;
 mod rows;
+mod sample_phases;
 mod scan;
 mod slopes;
 mod uncertain;

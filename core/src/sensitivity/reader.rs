@@ -15,7 +15,7 @@ use nalgebra::DVector;
 use super::cycle::{Cycle, Evaluated};
 use super::landing::Landing;
 use super::moments::{Moments, Slope};
-use super::places::Places;
+use super::sample_phases::Places;
 use super::scan::{End, Extreme};
 use super::slopes::{By, Direction, Instant, Moved, Slopes};
 use crate::system::Variable;

@@ -1,8 +1,8 @@
 //! What is read off orbits, row by row.
 
 use super::Missing;
-use super::places::Needs;
-use super::slopes::Asked;
+use super::sample_phases::Needs;
+use super::slopes::signals::Asked;
 use crate::branches::branch::{Model, Source};
 use crate::error::Error;
 use crate::model::request::RequestError;

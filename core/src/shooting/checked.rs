@@ -7,7 +7,7 @@ use super::problem::{ShootingProblem, Source};
 use crate::balance::symmetry::{Over, Permutations};
 use crate::branches::point::Point;
 use crate::branches::request::{Guess, Request};
-use crate::continuation::step;
+use crate::continuation::step_control;
 use crate::error::Error;
 use crate::model::error::ModelError;
 use crate::model::layout::Layout;
@@ -157,8 +157,8 @@ impl<'r> Asked<'r> {
             at_once,
             stability: self.request.stability,
             accuracy: self.shooting.accuracy,
-            points: step::max_points(self.request.max_points)?,
-            steps: step::largest_step(self.request.largest_step)?,
+            points: step_control::max_points(self.request.max_points)?,
+            steps: step_control::largest_step(self.request.largest_step)?,
             cancel: self.request.cancel.clone(),
             keep: self.request.keep.clone(),
         })

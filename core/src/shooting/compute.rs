@@ -2,12 +2,12 @@
 
 use std::time::Instant;
 
+use super::branch_switch::{self, Begun};
 use super::error_reference::ErrorReference;
 use super::problem::ShootingProblem;
-use super::rest::Rest;
+use super::resume_state::Rest;
 use super::run::Run;
 use super::start::{First, first};
-use super::switch::{self, Begun};
 use crate::branches::branch::Branch;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
@@ -72,7 +72,8 @@ pub(crate) fn branch_at(
     visit: See<'_>,
 ) -> Result<Followed, Error> {
     let started = Instant::now();
-    let Begun { first, point } = switch::switch_branch(problem, event, side, (to - from).abs())?;
+    let Begun { first, point } =
+        branch_switch::switch_branch(problem, event, side, (to - from).abs())?;
     let along = |_| Start::Along(Box::new(point));
     followed(problem, first, along, [from, to], visit, started)
 }
@@ -91,7 +92,7 @@ pub(crate) fn branch_from(
     let started = Instant::now();
     let found = first(problem, guess, value, problem.omega_at(value))?;
     let side = (to - from).signum();
-    let Begun { first, point } = switch::resume(problem, found, side, (to - from).abs())?;
+    let Begun { first, point } = branch_switch::resume(problem, found, side, (to - from).abs())?;
     let along = |_| Start::Along(Box::new(point));
     followed(problem, first, along, [from, to], visit, started)
 }

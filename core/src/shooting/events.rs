@@ -1,6 +1,6 @@
 //! Events of a branch: where a test function vanishes between two orbits, and how well that is known.
 //!
-//! The test functions are those of [`tested`](super::tested). A place is reported if it solves the equations and the function was
+//! The test functions are those of [`test_functions`](super::test_functions). A place is reported if it solves the equations and the function was
 //! driven to zero there; its error is what an error reference makes of it.
 
 use nalgebra::DMatrix;
@@ -11,7 +11,7 @@ use super::method::VANISHED;
 use super::output_error::{self, At, output_error};
 use super::problem::ShootingProblem;
 use super::run::{Run, observe, relative};
-use super::tested::{Test, Tests};
+use super::test_functions::{Test, Tests};
 use crate::branches::engine::{self, Aim};
 use crate::branches::extreme;
 use crate::branches::moduli::multipliers;

@@ -7,7 +7,8 @@ use super::events;
 use super::gap_extremes::GapExtremes;
 use super::minimal_period::earlier;
 use super::run::Run;
-use super::tested::{self, Tests};
+use super::test_functions::{self, Tests};
+use crate::branches::branch_start::step_on_other_branch;
 use crate::branches::checkpoint::keep;
 use crate::branches::engine::{Search, Walk};
 use crate::branches::extreme::{self, Extreme};
@@ -18,7 +19,6 @@ use crate::branches::problem::{
 use crate::branches::progress::{Progress, See};
 use crate::branches::record::Record;
 use crate::branches::recurrence::{Recurrence, may_be_earlier};
-use crate::branches::switch::step_on_other_branch;
 use crate::continuation::follow::{Continue, CurvePoint, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -49,7 +49,7 @@ pub(super) struct ShootingBranch<'b, 'r> {
 impl<'b, 'r> ShootingBranch<'b, 'r> {
     pub(super) fn new(run: &'b mut Run<'r>, equations: Equations, visit: See<'b>) -> Self {
         let watched = if run.problem.stability {
-            tested::watched(equations.span.recurrence.doubling(), equations.order())
+            test_functions::watched(equations.span.recurrence.doubling(), equations.order())
         } else {
             Vec::new()
         };
@@ -120,11 +120,12 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
 
     /// What happens at a zero, if anything does.
     fn kind(&mut self, zero: &Zero) -> Option<EventKind> {
-        let tested::Test::Modulus(place) = tested::Test::of(zero.change.test) else {
+        let test_functions::Test::Modulus(place) = test_functions::Test::of(zero.change.test)
+        else {
             return Some(zero.change.kind);
         };
         let tells = zero.told || zero.least <= self.last_error();
-        let doubling = self.watched[tested::DOUBLING].kind;
+        let doubling = self.watched[test_functions::DOUBLING].kind;
         let tests = self.tests(&zero.root.located.point);
         tests.seen_by_modulus(place, tells, doubling)
     }
@@ -157,7 +158,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
     }
 
     fn test(&mut self, index: usize, at: &CurvePoint) -> TestValue {
-        TestValue::plain(self.tests(at).value(tested::Test::watched(index)))
+        TestValue::plain(self.tests(at).value(test_functions::Test::watched(index)))
     }
 
     fn pairs(&mut self, at: &CurvePoint) -> Option<Vec<Complex<f64>>> {
@@ -171,8 +172,8 @@ impl BranchProblem for ShootingBranch<'_, '_> {
 
     /// Without damping all moduli are one, but for what is not known of them.
     fn noise(&self, index: usize) -> f64 {
-        match tested::Test::watched(index) {
-            tested::Test::Modulus(_) => self.error_of_multipliers(),
+        match test_functions::Test::watched(index) {
+            test_functions::Test::Modulus(_) => self.error_of_multipliers(),
             _ => 0.0,
         }
     }
@@ -183,13 +184,13 @@ impl BranchProblem for ShootingBranch<'_, '_> {
 
     fn vanishes(&mut self, change: Change, located: &Located) -> bool {
         let (point, equations) = (&located.point, &mut self.equations);
-        let unit = match tested::Test::of(change.test) {
-            tested::Test::Slope => point.narrowness(),
-            tested::Test::Bordered => {
+        let unit = match test_functions::Test::of(change.test) {
+            test_functions::Test::Slope => point.narrowness(),
+            test_functions::Test::Bordered => {
                 events::others(equations, &point.u, 1.0) / point.parameter_slope().abs()
             }
-            tested::Test::Plus => events::others(equations, &point.u, -1.0),
-            tested::Test::Modulus(_) => {
+            test_functions::Test::Plus => events::others(equations, &point.u, -1.0),
+            test_functions::Test::Modulus(_) => {
                 return located.test.abs() <= self.error_of_multipliers();
             }
         };

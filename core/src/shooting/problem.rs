@@ -10,7 +10,7 @@ use crate::branches::stability::Stability;
 use crate::cancel::Cancel;
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
-use crate::continuation::step::StepControl;
+use crate::continuation::step_control::StepControl;
 use crate::error::Error;
 use crate::orbit::observe::Accuracy;
 use crate::system::{System, Variable};

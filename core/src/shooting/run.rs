@@ -9,7 +9,7 @@ use super::method::ShootingBranch;
 use super::minimal_period::{SameState, earlier, passes_between};
 use super::output_error::{At, Errors, output_error};
 use super::problem::ShootingProblem;
-use super::rest::Rest;
+use super::resume_state::Rest;
 use super::signals::Reader;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;

@@ -15,7 +15,7 @@ use crate::continuation::follow::{FollowOptions, Halt, Start, Visit, follow};
 use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
-use crate::continuation::step::StepControl;
+use crate::continuation::step_control::StepControl;
 use crate::system::Variable;
 
 /// Points of a branch, at most.

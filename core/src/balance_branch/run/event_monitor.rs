@@ -3,7 +3,7 @@
 //! | event | test function |
 //! |---|---|
 //! | symmetry breaking, period doubling | the determinant of the block of harmonics that the orbits do not have ([`critical_block`](crate::balance::critical_block)) |
-//! | branch point ([`crossed`](super::crossed)) | the determinant of the Jacobian with the tangent as its border |
+//! | branch point ([`crossing_branch`](super::crossing_branch)) | the determinant of the Jacobian with the tangent as its border |
 //! | Neimark-Sacker | the moduli of multipliers ([`moduli`](crate::branches::moduli)), where a complex pair passes one |
 //! | grazing ([`touch`](crate::branches::engine)) | an extreme of a gap less the level ([`gap_extremes`](super::gap_extremes)) |
 //!

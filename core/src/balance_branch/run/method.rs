@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 
 use super::Run;
-use super::crossed::CROSSED;
+use super::crossing_branch::CROSSED;
 use super::event_monitor::{EventMonitor, Found, Test as OfOrbit};
 use super::folds::FOLD_TOLERANCE;
 use super::gap_extremes::GapExtremes;

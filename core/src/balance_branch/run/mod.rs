@@ -2,12 +2,13 @@
 //! tolerance asks for it.
 
 mod corrected_moduli;
-mod crossed;
+mod crossing_branch;
 mod event_monitor;
 mod folds;
 mod gap_extremes;
+mod joined;
 mod method;
-mod rest;
+mod resume_state;
 
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
@@ -26,7 +27,7 @@ use crate::error::Error;
 use crate::numeric::fourier::series;
 use event_monitor::EventMonitor;
 use method::BalanceBranch;
-pub(crate) use rest::Rest;
+pub(crate) use resume_state::Rest;
 
 /// The core grows when updates shrink by less than this at so many points in succession.
 const SLOW: f64 = 0.5;

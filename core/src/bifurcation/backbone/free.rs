@@ -30,7 +30,7 @@ use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
-use crate::continuation::step::{self, StepControl};
+use crate::continuation::step_control::{self, StepControl};
 use crate::error::Error;
 use crate::model::error::ModelError;
 use crate::model::request::RequestError;
@@ -227,8 +227,8 @@ impl FreeOscillation {
         Ok(FollowOptions {
             from,
             to,
-            points: step::max_points(self.max_points)?,
-            steps: step::largest_step(self.largest_step)?,
+            points: step_control::max_points(self.max_points)?,
+            steps: step_control::largest_step(self.largest_step)?,
             newton: NewtonOptions {
                 tolerance: (100.0 * self.tolerance).clamp(1e-11, 1e-6),
                 iterations: 12,

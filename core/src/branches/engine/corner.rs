@@ -33,11 +33,11 @@
 //! (corners of branches); Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (a border that is not the
 //! tangent).
 
-use super::approach::{Approach, Reached};
 use super::corner_search::{Corner, CornerSearch};
 use super::explained::Bent;
+use super::grazing::touching;
+use super::grazing_search::{Approach, Reached};
 use super::seen::Seen;
-use super::touch::touching;
 use super::{Engine, Looked};
 use crate::branches::extreme::{Bend, Extreme, passed};
 use crate::branches::point::Event;

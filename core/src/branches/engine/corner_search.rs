@@ -1,6 +1,6 @@
 //! The search for a [corner](super::corner): the touch, and the branch on both sides of it.
 
-use super::approach::{Approach, Reached, again};
+use super::grazing_search::{Approach, Reached, again};
 use crate::branches::extreme::Extreme;
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Step};

@@ -1,15 +1,12 @@
-//! What is said where multipliers cross the unit circle and no event was located.
+//! What is said where multipliers cross the unit circle and no event was located. Touches are kept by [`grazing`](super::grazing).
 
 use super::Engine;
-use super::touch::AT_ONCE;
-use crate::branches::extreme::{Bend, Extreme};
+use crate::branches::extreme::Bend;
 use crate::branches::moduli;
 use crate::branches::point::Point;
-use crate::branches::problem::{BranchProblem, Touch};
+use crate::branches::problem::BranchProblem;
 use crate::branches::record::Kept;
 use crate::branches::stability::Verdict;
-use crate::continuation::follow::Step;
-use crate::continuation::newton::Newton;
 use crate::event::{EventKind, Turn};
 
 /// A touch at which the branch or its multipliers bend.
@@ -17,36 +14,15 @@ use crate::event::{EventKind, Turn};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Bent {
     /// Number of points of the branch before it.
-    after: usize,
+    pub(super) after: usize,
     /// Of the event.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    value: f64,
+    pub(super) value: f64,
     /// The sharpest of all levels that are touched there.
-    bend: Bend,
+    pub(super) bend: Bend,
 }
 
 impl Bent {
-    /// Has a touch kept, of an orbit with these extremes. Says what bends there, if anything does and it is an event.
-    pub(super) fn kept(
-        problem: &mut dyn BranchProblem,
-        newton: &mut Newton,
-        step: Step<'_>,
-        touch: &Touch,
-        extremes: &[Extreme],
-    ) -> Option<Self> {
-        let known = problem.record().events.len();
-        problem.keep_touch(newton, step, touch);
-        let event = problem.record().events.get(known)?;
-        let touching = extremes.iter();
-        let touching = touching.filter(|extreme| extreme.above.abs() <= AT_ONCE);
-        let bend = touching.fold(touch.extreme.bend, |bend, extreme| bend.max(extreme.bend));
-        (bend != Bend::Smooth).then_some(Self {
-            after: touch.after,
-            value: event.point.value,
-            bend,
-        })
-    }
-
     /// Whether it is what a file may say.
     pub(super) fn is_possible(&self) -> bool {
         self.value.is_finite()

@@ -10,7 +10,7 @@
 //! is not within the step, or hardly.
 
 use super::Engine;
-use super::approach::{Approach, Reached};
+use super::grazing_search::{Approach, Reached};
 use crate::branches::extreme::{Extreme, Passage, is_copy, passed};
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Step};

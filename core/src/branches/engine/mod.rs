@@ -17,20 +17,21 @@
 //! 4. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
 //! 5. What events that were located [hide](counted) is looked for beside them.
 //! 6. A step onto a branch of more regular orbits is made again up to shortly before the [joint] of both.
-//! 7. Where an extreme of a gap goes through a level, the orbit that [touches](touch) it is located, and what test functions show there and at no end
+//! 7. Where an extreme of a gap goes through a level, the orbit that [touches](grazing) it is located, and what test functions show there and at no end
 //!    of the step is recorded.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions); Keller
 //! (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (the bordered determinant).
 
-mod approach;
 mod back;
 mod corner;
 mod corner_search;
 mod counted;
 mod explained;
+mod grazing;
+mod grazing_search;
+mod grazing_within_step;
 mod inside;
-mod inside_touch;
 mod joint;
 mod leap;
 mod meeting;
@@ -38,15 +39,14 @@ mod narrow;
 mod seen;
 #[cfg(test)]
 mod tests;
-mod touch;
 mod walk;
 mod zero;
 
 use explained::Bent;
+use grazing::Gaps;
 use inside::distance;
 use joint::Joint;
 use seen::{Former, Seen, changes, is_modulus};
-use touch::Gaps;
 use walk::Looked;
 pub(crate) use walk::{Places, Walk};
 use zero::Recorded;

@@ -10,15 +10,15 @@
 //! g(tau*) = place + j w,        j = -2, -1, 0, 1, 2                                                            (1)
 //! ```
 //!
-//! as far as they are between both ends, are computed by Newton's method with (1) as its border, as orbits that [touch](super::approach) a
+//! as far as they are between both ends, are computed by Newton's method with (1) as its border, as orbits that [touch](super::grazing_search) a
 //! level are, and divide the step. Where the branch turns sharply between two of them, or before the first one, more of them follow.
 //!
 //! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2: at a touch the
 //! distance of the extreme, not the parameter, tells the orbits apart.
 
 use super::Engine;
+use super::grazing::Gaps;
 use super::seen::Seen;
-use super::touch::Gaps;
 use crate::branches::extreme::Extreme;
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Step};

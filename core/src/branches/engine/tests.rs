@@ -11,6 +11,7 @@
 use nalgebra::DMatrix;
 
 use super::run;
+use crate::branches::branch_start::BranchSwitch;
 use crate::branches::observed::Observed;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
@@ -20,14 +21,13 @@ use crate::branches::problem::{
 use crate::branches::record::Record;
 use crate::branches::recurrence::SignedPermutation;
 use crate::branches::stability::Stability;
-use crate::branches::switch::BranchSwitch;
 use crate::branches::value::{Chord, chain, solutions};
 use crate::continuation::follow::{CurvePoint, FollowOptions, Halted, Start, Step, Stop};
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{Problem, Scale};
-use crate::continuation::step::StepControl;
+use crate::continuation::step_control::StepControl;
 use crate::event::EventKind;
 
 const WATCHED: [Watched; 3] = [

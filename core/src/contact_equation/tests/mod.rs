@@ -11,10 +11,11 @@ mod several;
 
 use nalgebra::DMatrix;
 
-use super::equations::{Equations, Setting};
-use super::gaps::Gaps;
-use super::placement::Resolution;
-use super::plan::{Frame, Plan};
+use super::equations::Equations;
+use super::equations::setting::{Frame, Setting};
+use super::orbit::gaps::Gaps;
+use super::skeleton::placement::Resolution;
+use super::switches::plan::Plan;
 use crate::branches::recurrence::Recurrence;
 use crate::branches::solve;
 use crate::cancel::Cancel;

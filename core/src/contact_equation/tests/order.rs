@@ -1,7 +1,7 @@
 //! How fast orbits converge with the nodes of a stretch, against shooting.
 
-use super::super::motion::Motion;
 use super::{OneSided, solved};
+use crate::contact_equation::orbit::motion::Motion;
 use crate::system::System;
 use crate::{FrequencyResponse, Shooting};
 

@@ -11,7 +11,7 @@ use std::f64::consts::LN_2;
 use std::marker::PhantomData;
 
 use super::outputs::Outputs;
-use super::room::{BLOCK, Column, Plan, Room, raise};
+use super::workspace::{BLOCK, Column, Plan, Room, raise};
 use crate::law::Derivatives;
 use crate::numeric::power::{Available, Target, Work};
 

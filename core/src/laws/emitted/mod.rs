@@ -21,7 +21,7 @@ mod batch;
 mod law;
 mod outputs;
 mod parts;
-mod room;
+mod workspace;
 
 pub use hertzian_contract::constants;
 pub use hertzian_contract::declared::Declared;

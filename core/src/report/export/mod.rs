@@ -5,11 +5,11 @@ mod consistent;
 mod csv;
 #[cfg(feature = "serde")]
 pub(crate) mod json;
+#[cfg(feature = "serde")]
+mod json_of_diagrams;
 pub(crate) mod map;
 mod npy;
 pub(crate) mod table;
-#[cfg(feature = "serde")]
-mod whole;
 
 pub use crate::numeric::decimal::{plain, rounded, to_error};
 pub use hertzian_file::{can_write, write};

@@ -16,7 +16,7 @@ use crate::branches::request::Guess;
 use crate::continuation::follow::Stop;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
-use crate::continuation::step::StepControl;
+use crate::continuation::step_control::StepControl;
 use crate::error::Error;
 use crate::event::EventKind;
 use crate::orbit::observe::Accuracy;

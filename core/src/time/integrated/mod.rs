@@ -14,11 +14,11 @@ mod kept;
 mod kink;
 mod map;
 mod noise;
+mod piece_switch;
 mod roots;
 pub(super) mod rule;
 mod step;
 mod step_control;
-mod switch;
 mod tangent;
 #[cfg(test)]
 mod tests;

@@ -36,7 +36,7 @@ use crate::continuation::follow::{
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
-use crate::continuation::step::{self, StepControl};
+use crate::continuation::step_control::{self, StepControl};
 use crate::error::Error;
 use crate::model::request::RequestError;
 use crate::model::{self, validate};
@@ -228,8 +228,8 @@ impl PhaseResonance {
         let options = FollowOptions {
             from,
             to,
-            points: step::max_points(self.max_points)?,
-            steps: step::largest_step(self.largest_step)?,
+            points: step_control::max_points(self.max_points)?,
+            steps: step_control::largest_step(self.largest_step)?,
             newton: NewtonOptions {
                 tolerance: 1e-10,
                 iterations: 20,

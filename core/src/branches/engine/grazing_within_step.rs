@@ -1,0 +1,144 @@
+//! Extremes of gaps that go through their level and back within a step.
+//!
+//! Both ends show such an extreme on one side of its level. How near it may come in between is told by its distance at three successive
+//! points, as of a test function that may pass zero twice: see (1) of [`inside`](super::inside).
+
+use super::grazing::Gaps;
+use super::inside::{CLOSE, Height, LOOKS, distance, in_doubt};
+use crate::branches::extreme::Extreme;
+use crate::branches::problem::BranchProblem;
+use crate::continuation::follow::Step;
+use crate::continuation::locate::inside;
+use crate::continuation::newton::{Newton, NewtonOptions};
+
+/// An extreme that is nearer to its level, in units of the gap, stays there: which side of it is rounding.
+const STAYS: f64 = 1e-8;
+
+/// Two successive steps, the parts of which are looked at.
+pub(super) struct Steps {
+    /// An orbit before the first one, and the ends of both.
+    ends: [Gaps; 3],
+    /// Where they are along the branch.
+    places: [f64; 3],
+    /// The ends of the parts of either.
+    pub(super) parts: [Vec<Gaps>; 2],
+}
+
+impl Steps {
+    /// Undivided; `None` where their unknowns differ.
+    pub(super) fn new(newton: &Newton, ends: [Gaps; 3]) -> Option<Self> {
+        if ends[0].point.u.len() != ends[1].point.u.len() {
+            return None;
+        }
+        let length = |i: usize| distance(newton, &ends[i].point, &ends[i + 1].point);
+        let places = [0.0, length(0), length(0) + length(1)];
+        let parts = [0, 1].map(|i| ends[i..i + 2].to_vec());
+        Some(Self {
+            ends,
+            places,
+            parts,
+        })
+    }
+
+    /// Divides them where an extreme is on the other side of its level than at all their ends.
+    pub(super) fn divide(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        options: NewtonOptions,
+    ) {
+        let middle = self.ends[1].extremes.clone();
+        for extreme in &middle {
+            let Some(heights) = self.heights(extreme) else {
+                continue;
+            };
+            for step in [1, 0] {
+                let inner = &self.parts[step][1..self.parts[step].len() - 1];
+                let is_hidden = |gaps: &Gaps| is_across(extreme, &gaps.extremes);
+                if inner.iter().any(is_hidden) {
+                    continue;
+                }
+                let search = Search {
+                    extreme,
+                    whole: Step {
+                        before: &self.ends[step].point,
+                        next: &self.ends[step + 1].point,
+                    },
+                    range: [self.places[step], self.places[step + 1]],
+                    options,
+                };
+                let Some((place, found)) = search.across(problem, newton, &heights) else {
+                    continue;
+                };
+                let along = |gaps: &Gaps| distance(newton, &self.ends[0].point, &gaps.point);
+                let parts = &self.parts[step];
+                let next = parts.iter().position(|part| along(part) > place);
+                let next = next.unwrap_or(parts.len() - 1).max(1);
+                self.parts[step].insert(next, found);
+            }
+        }
+    }
+
+    /// How far an extreme of the orbit in the middle is from its level at all three, if it is on one side.
+    fn heights(&self, extreme: &Extreme) -> Option<[Height; 3]> {
+        let mut heights = [Height {
+            place: 0.0,
+            height: 0.0,
+        }; 3];
+        for (i, to) in heights.iter_mut().enumerate() {
+            let there = extreme.nearest(&self.ends[i].extremes)?;
+            // Each must be the nearest of the other.
+            if there.nearest(&self.ends[1].extremes) != Some(extreme) {
+                return None;
+            }
+            *to = Height {
+                place: self.places[i],
+                height: extreme.above.signum() * there.above,
+            };
+        }
+        let clear = heights.iter().all(|known| known.height > STAYS);
+        clear.then_some(heights)
+    }
+}
+
+/// Whether the same extreme of another orbit is on the other side of its level.
+fn is_across(extreme: &Extreme, others: &[Extreme]) -> bool {
+    let there = extreme.nearest(others);
+    there.is_some_and(|there| there.above * extreme.above < 0.0)
+}
+
+/// A step in which an extreme may come to its level.
+struct Search<'s> {
+    extreme: &'s Extreme,
+    whole: Step<'s>,
+    /// Where it begins and ends along the branch.
+    range: [f64; 2],
+    options: NewtonOptions,
+}
+
+impl Search<'_> {
+    /// An orbit in the step where the extreme is on the other side of its level, and its place.
+    fn across(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        heights: &[Height; 3],
+    ) -> Option<(f64, Gaps)> {
+        let [from, to] = self.range;
+        let mut known = heights.to_vec();
+        for _ in 0..LOOKS {
+            let place = in_doubt(&known, self.range, CLOSE * (to - from))?;
+            let part = (place - from) / (to - from);
+            let point = inside(problem.equations(), newton, self.whole, part, self.options)?;
+            let gaps = Gaps::at(problem, &point)?;
+            let there = self.extreme.nearest(&gaps.extremes)?;
+            let height = self.extreme.above.signum() * there.above;
+            if height < 0.0 {
+                return Some((place, gaps));
+            }
+            let next = known.iter().position(|other| other.place > place)?;
+            known.insert(next, Height { place, height });
+        }
+        None
+    }
+}

@@ -1,0 +1,100 @@
+//! Motions that a first orbit is looked for at: the series of an orbit, or its states along the motion itself.
+//!
+//! Between samples that are `d` apart, with positions `a`, `b` and velocities `v`, `w`, positions are at the part `s` of the way
+//!
+//! ```text
+//! x = a + s (d v + s (3 r - 2 d v - d w + s (d v + d w - 2 r))),    r = b - a                                  (1)
+//! ```
+//!
+//! Source: de Boor (2001), A Practical Guide to Splines, chapter IV (cubic Hermite interpolation).
+
+use std::f64::consts::TAU;
+
+use crate::branches::orbit::Orbit;
+use crate::branches::point::Point;
+use crate::contact_equation::problem::ContactProblem;
+use crate::error::Error;
+use crate::time::stroboscope::Stroboscope;
+use crate::time::{MotionError, history};
+
+/// Samples in a period of the declaration.
+const SAMPLES: usize = 4096;
+
+/// An orbit with its motion.
+pub(in crate::contact_equation) struct Guess<'g> {
+    pub(in crate::contact_equation) point: &'g Point,
+    /// States at equal distances, each with all positions and then all velocities; none where the series of the orbit tells them.
+    samples: Vec<f64>,
+}
+
+impl<'g> Guess<'g> {
+    /// By the series of an orbit.
+    pub(in crate::contact_equation) fn by_series(point: &'g Point) -> Self {
+        Self {
+            point,
+            samples: Vec::new(),
+        }
+    }
+
+    /// By the motion from the state of an orbit, which has few harmonics where contacts are stiff.
+    ///
+    /// # Errors
+    /// If the motion cannot be computed.
+    pub(in crate::contact_equation) fn by_motion(
+        problem: &ContactProblem,
+        point: &'g Point,
+    ) -> Result<Self, Error> {
+        let asked = &problem.asked;
+        let failed = |reason| MotionError {
+            value: point.value,
+            reason,
+        };
+        let mut flow = asked.flow(asked.source.tolerance)?;
+        flow.set(asked.variable, point.value).map_err(failed)?;
+        let mut samples = Vec::new();
+        let mut state = point.orbit.state();
+        let periods = point.orbit.period;
+        let mut keep = |_: f64, state: &[f64]| samples.extend_from_slice(state);
+        let mut map = Stroboscope::new(flow);
+        history::record(&mut map, &mut state, periods, SAMPLES, &mut keep).map_err(failed)?;
+        Ok(Self { point, samples })
+    }
+
+    /// How fast its phase moves.
+    pub(in crate::contact_equation) fn rate(&self) -> f64 {
+        self.point.orbit.base * self.point.orbit.period as f64
+    }
+
+    /// Writes positions and velocities at a phase.
+    pub(in crate::contact_equation) fn write(&self, phase: f64, state: &mut [f64]) {
+        let orbit = &self.point.orbit;
+        if self.samples.is_empty() {
+            return write_series(orbit, phase / self.rate(), state);
+        }
+        let order = state.len();
+        let n = order / 2;
+        let last = self.samples.len() / order - 1;
+        let place = (phase / TAU * SAMPLES as f64).rem_euclid(last as f64);
+        let index = (place as usize).min(last - 1);
+        let [s, step] = [place - index as f64, TAU / SAMPLES as f64 / self.rate()];
+        let [a, b] = [index, index + 1].map(|index| &self.samples[index * order..][..order]);
+        for i in 0..n {
+            let rise = b[i] - a[i];
+            let ends = [step * a[n + i], step * b[n + i]];
+            // (1)
+            let square = 3.0 * rise - 2.0 * ends[0] - ends[1];
+            let cube = ends[0] + ends[1] - 2.0 * rise;
+            state[i] = a[i] + s * (ends[0] + s * (square + s * cube));
+            state[n + i] = (ends[0] + s * (2.0 * square + 3.0 * s * cube)) / step;
+        }
+    }
+}
+
+fn write_series(orbit: &Orbit, time: f64, state: &mut [f64]) {
+    let coordinates = orbit.coordinates();
+    for i in 0..coordinates {
+        if let Some((x, v)) = orbit.state_at(i, time) {
+            (state[i], state[coordinates + i]) = (x, v);
+        }
+    }
+}

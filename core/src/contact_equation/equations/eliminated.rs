@@ -1,0 +1,128 @@
+//! What is left when switches are eliminated too from the equations of a pass, in which forces are: the map of the states over the period,
+//! and a step of Newton's method across a tangent.
+//!
+//! Numbers of equations are those of [`equations`](crate::contact_equation::equations).
+
+use nalgebra::DMatrix;
+
+use super::Equations;
+use crate::branches::recurrence::SignedPermutation;
+use crate::numeric::linear::{Lu, Matrix};
+
+/// Room for both, made when it is first asked for.
+#[derive(Debug, Default)]
+pub(in crate::contact_equation) struct Eliminated {
+    inner: Option<Solver>,
+    whole: Option<Solver>,
+}
+
+#[derive(Debug)]
+struct Solver {
+    matrix: Matrix,
+    lu: Lu,
+    column: Vec<f64>,
+}
+
+impl Solver {
+    fn of(order: usize) -> Self {
+        Self {
+            matrix: Matrix::zeros(order),
+            lu: Lu::new(order),
+            column: vec![0.0; order],
+        }
+    }
+
+    /// (4), from the derivatives of residuals row by row.
+    fn map(
+        &mut self,
+        derivatives: &[f64],
+        unknowns: usize,
+        order: usize,
+        image: &SignedPermutation,
+    ) -> Option<DMatrix<f64>> {
+        let row = |row: usize| &derivatives[row * (unknowns + 1)..][..unknowns];
+        let mut map = DMatrix::from_fn(order, order, |i, j| row(i)[j]);
+        for i in 0..order {
+            let (place, sign) = image.state_entry(i, order / 2);
+            map[(i, place)] += sign;
+        }
+        for i in 0..unknowns - order {
+            let entries = &row(order + i)[order..];
+            self.matrix.row_mut(i).copy_from_slice(entries);
+        }
+        self.lu.factorise(&mut self.matrix).ok()?;
+        for j in 0..order {
+            for (i, x) in self.column.iter_mut().enumerate() {
+                *x = row(order + i)[j];
+            }
+            self.lu.solve(&self.matrix, &mut self.column);
+            for i in 0..order {
+                let through = row(i)[order..].iter().zip(&self.column);
+                map[(i, j)] -= through.map(|(a, x)| a * x).sum::<f64>();
+            }
+        }
+        let whole = map.clone();
+        for i in 0..order {
+            let (place, sign) = image.state_entry(i, order / 2);
+            map.row_mut(place).copy_from(&(sign * whole.row(i)));
+        }
+        Some(map)
+    }
+}
+
+impl Equations {
+    /// The map (4) of the states until the orbit comes back: positions, and velocities by the frequency. `None` too where the unknowns are
+    /// those of no motion, since switches are in another order.
+    pub(in crate::contact_equation) fn map(&mut self, u: &[f64]) -> Option<DMatrix<f64>> {
+        self.pass(u, true);
+        if self.failed || !self.is_in_order() {
+            return None;
+        }
+        if self.chain.singular().is_some() {
+            return None;
+        }
+        let (told, order) = (self.skeleton.told(), self.skeleton.order);
+        let inner = &mut self.eliminated.inner;
+        let inner = inner.get_or_insert_with(|| Solver::of(told - order));
+        let image = &self.skeleton.recurrence().image;
+        let mut map = inner.map(&self.matrix, told, order, image)?;
+        for i in 0..order {
+            for j in 0..order {
+                map[(i, j)] *= self.unit(j) / self.unit(i);
+            }
+        }
+        map.iter().all(|x| x.is_finite()).then_some(map)
+    }
+
+    /// A step of Newton's method from these unknowns, in the plane across a tangent of which states, switches and the parameter count.
+    /// `None` where the matrix is singular.
+    pub(in crate::contact_equation) fn across(
+        &mut self,
+        u: &[f64],
+        tangent: &[f64],
+    ) -> Option<Vec<f64>> {
+        self.compute(u, true);
+        if self.failed || self.chain.singular().is_some() {
+            return None;
+        }
+        let told = self.skeleton.told();
+        let whole = &mut self.eliminated.whole;
+        let Solver { matrix, lu, column } = whole.get_or_insert_with(|| Solver::of(told + 1));
+        for (row, entries) in self.matrix.chunks_exact(told + 1).enumerate() {
+            matrix.row_mut(row).copy_from_slice(entries);
+        }
+        let last = matrix.row_mut(told);
+        last[..told].copy_from_slice(&tangent[..told]);
+        last[told] = tangent[tangent.len() - 1];
+        lu.factorise(matrix).ok()?;
+        let mut step = self.residual.clone();
+        self.chain.forward(&mut step);
+        column[..told].copy_from_slice(&step[..told]);
+        column[told] = 0.0;
+        lu.solve(matrix, column);
+        step[..told].copy_from_slice(&column[..told]);
+        self.chain.back(column, &mut step[told..]);
+        step.push(column[told]);
+        step.iter().all(|x| x.is_finite()).then_some(step)
+    }
+}

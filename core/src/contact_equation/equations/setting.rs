@@ -1,0 +1,99 @@
+//! What is the same for all orbits of a branch: the system, what is varied, and what unknowns count from.
+
+use std::sync::Arc;
+
+use crate::cancel::Cancel;
+use crate::contact_equation::linear_part::configuration::Configuration;
+use crate::contact_equation::linear_part::moving_stiffness::as_contacts;
+use crate::contact_equation::linear_part::values::Values;
+use crate::contact_equation::skeleton::Skeleton;
+use crate::contact_equation::skeleton::placement::Resolution;
+use crate::model::layout::Layout;
+use crate::system::{System, Variable};
+
+/// What is the same for all orbits of a branch.
+#[derive(Clone)]
+pub(in crate::contact_equation) struct Setting {
+    pub(in crate::contact_equation) system: Arc<dyn System>,
+    pub(in crate::contact_equation) layout: Arc<Layout>,
+    pub(in crate::contact_equation) variable: Variable,
+    pub(in crate::contact_equation) parameters: Vec<f64>,
+    /// Unless it is varied.
+    pub(in crate::contact_equation) omega: f64,
+    pub(in crate::contact_equation) cancel: Cancel,
+    /// Nothing but the time depends on the frequency that is varied.
+    pub(in crate::contact_equation) plain: bool,
+}
+
+impl Setting {
+    pub(in crate::contact_equation) fn new(
+        system: &Arc<dyn System>,
+        variable: Variable,
+        parameters: Vec<f64>,
+        omega: f64,
+        cancel: &Cancel,
+    ) -> Self {
+        let mut layout = Layout::of(system.as_ref());
+        let system = as_contacts(system, &mut layout);
+        let mut by = vec![0.0; layout.coefficients];
+        system.coefficients_by(Variable::Omega, &parameters, omega, &mut by);
+        Self {
+            system,
+            layout: Arc::new(layout),
+            variable,
+            plain: variable == Variable::Omega && by.iter().all(|x| *x == 0.0),
+            parameters,
+            omega,
+            cancel: cancel.clone(),
+        }
+    }
+
+    /// Parameters and frequency where what is varied has a value.
+    pub(in crate::contact_equation) fn at(&self, value: f64) -> (Vec<f64>, f64) {
+        let mut parameters = self.parameters.clone();
+        match self.variable {
+            Variable::Omega => (parameters, value),
+            Variable::Parameter(index) => {
+                parameters[index] = value;
+                (parameters, self.omega)
+            }
+        }
+    }
+
+    /// The system there.
+    pub(in crate::contact_equation) fn values(&self, value: f64) -> Option<Values> {
+        let (parameters, omega) = self.at(value);
+        let values = Values::new(self.system.as_ref(), &self.layout, &parameters, omega)?;
+        Some(Values {
+            changes: !self.plain,
+            ..values
+        })
+    }
+
+    /// The configurations of a skeleton at values; `None` where one has dependent eigenvectors.
+    pub(in crate::contact_equation) fn configurations(
+        &self,
+        values: &Values,
+        skeleton: &Skeleton,
+    ) -> Option<Vec<Configuration>> {
+        let pieces = skeleton.configurations.iter();
+        let of = |pieces: &Vec<usize>| Configuration::new(self.system.as_ref(), values, pieces);
+        pieces.map(of).collect()
+    }
+
+    pub(super) fn at_omega(&self, value: f64) -> f64 {
+        match self.variable {
+            Variable::Omega => value,
+            Variable::Parameter(_) => self.omega,
+        }
+    }
+}
+
+/// What the unknowns of a branch count from.
+#[derive(Debug, Clone)]
+pub(in crate::contact_equation) struct Frame {
+    /// Positions and velocities.
+    pub(in crate::contact_equation) reference: Vec<f64>,
+    pub(in crate::contact_equation) size: f64,
+    pub(in crate::contact_equation) resolution: Resolution,
+}

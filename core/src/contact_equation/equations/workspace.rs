@@ -1,0 +1,82 @@
+//! Room for a pass over an orbit: nothing is allocated while one is made.
+
+use super::integrals::Integrals;
+use super::targets::Targets;
+use crate::contact_equation::linear_part::values::Output;
+use crate::contact_equation::skeleton::Skeleton;
+use crate::contact_equation::skeleton::interval::Interval;
+
+/// Room for a pass.
+#[derive(Debug, Default)]
+pub(in crate::contact_equation) struct Room {
+    /// States at the last cut, and their derivatives by the unknowns that are no forces and the parameter, row by row.
+    pub(in crate::contact_equation) y: Vec<f64>,
+    pub(in crate::contact_equation) by: Vec<f64>,
+    pub(super) by_next: Vec<f64>,
+    /// The steady response where an interval begins, with its derivatives.
+    pub(super) steady_from: [Vec<f64>; 3],
+    pub(super) integrals: Integrals,
+    pub(in crate::contact_equation) targets: Targets,
+    /// Per active contact and node: gap and rate, and what they are of the states as rows.
+    pub(in crate::contact_equation) outputs: Vec<Output>,
+    pub(super) gap_rows: Vec<f64>,
+    pub(super) rate_rows: Vec<f64>,
+    pub(in crate::contact_equation) gaps: Vec<f64>,
+    pub(in crate::contact_equation) rates: Vec<f64>,
+    pub(in crate::contact_equation) forces: Vec<f64>,
+    pub(in crate::contact_equation) by_gap: Vec<f64>,
+    pub(in crate::contact_equation) by_rate: Vec<f64>,
+    /// Derivatives of the states of a configuration by those of the linear part.
+    pub(in crate::contact_equation) carried: Vec<f64>,
+    /// Rows over the states.
+    pub(in crate::contact_equation) rows: [Vec<f64>; 3],
+    /// Per switch: gap less level and its slope by the phase, and their derivatives.
+    pub(super) at_switch: Vec<[f64; 2]>,
+    pub(super) switch_rows: Vec<f64>,
+    pub(super) slope_rows: Vec<f64>,
+    /// The same as forms of the states behind an interval.
+    pub(super) gap_forms: Vec<f64>,
+    pub(super) slope_forms: Vec<f64>,
+    pub(super) read_at: Vec<usize>,
+}
+
+impl Room {
+    pub(in crate::contact_equation) fn new(skeleton: &Skeleton) -> Self {
+        let (order, columns) = (skeleton.order, skeleton.told() + 1);
+        let most =
+            |of: fn(&Interval) -> usize| skeleton.intervals.iter().map(of).max().unwrap_or(0);
+        let nodes = most(|interval| interval.nodes.count());
+        let forces = most(Interval::forces);
+        let states = || vec![0.0; order];
+        let carried = if skeleton.configurations.is_empty() {
+            0
+        } else {
+            order * order
+        };
+        let switches = skeleton.switches.len();
+        Self {
+            y: states(),
+            by: vec![0.0; order * columns],
+            by_next: vec![0.0; order * columns],
+            steady_from: std::array::from_fn(|_| states()),
+            integrals: Integrals::new(order, nodes, forces),
+            targets: Targets::new(order, nodes + 1),
+            outputs: vec![Output::default(); forces],
+            gap_rows: vec![0.0; forces * order],
+            rate_rows: vec![0.0; forces * order],
+            gaps: vec![0.0; forces],
+            rates: vec![0.0; forces],
+            forces: vec![0.0; forces],
+            by_gap: vec![0.0; forces],
+            by_rate: vec![0.0; forces],
+            carried: vec![0.0; carried],
+            rows: std::array::from_fn(|_| states()),
+            at_switch: vec![[0.0; 2]; switches],
+            switch_rows: vec![0.0; switches * columns],
+            slope_rows: vec![0.0; switches * columns],
+            gap_forms: vec![0.0; switches * order],
+            slope_forms: vec![0.0; switches * order],
+            read_at: vec![0; switches],
+        }
+    }
+}

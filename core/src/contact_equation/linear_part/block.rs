@@ -1,0 +1,340 @@
+//! Two states of the linear part that no other is coupled with: the exponential of a matrix of order two.
+//!
+//! With `m = tr A / 2` and `D = A - m`, `D^2 = d I`, so that for every kind of damping, of rigid and of repeated exponents too,
+//!
+//! ```text
+//! e^(A s) = c(s) I + k(s) D,    c = e^(m s) cosh(sqrt(d) s),    k = e^(m s) sinh(sqrt(d) s) / sqrt(d)         (1)
+//! ```
+//!
+//! where `d < 0` has cosine and sine. The response from rest to a wave `e^(i w t)` is (1) with
+//!
+//! ```text
+//! r(s) = int_0^s k(u) e^(i w (s - u)) du,    p(s) = int_0^s c(u) e^(i w (s - u)) du = k + (i w - m) r         (2)
+//! ```
+//!
+//! Source: Higham (2008), Functions of Matrices, section 1.2 (equation 1.10, interpolation of Hermite).
+
+use multiversion::multiversion;
+use nalgebra::Complex;
+
+use crate::numeric::fourier::gauss;
+
+/// A matrix of order two, row by row.
+pub(in crate::contact_equation) type Square = [[f64; 2]; 2];
+/// Two states.
+pub(in crate::contact_equation) type Pair = [f64; 2];
+
+/// Below this `d s^2` series take the place of sine and cosine.
+const SMALL: f64 = 0.1;
+/// Points of the rule for (2), and the angle that the fastest factor turns by between one and the next such rule.
+const POINTS: usize = 24;
+const TURN: f64 = 4.0;
+/// More such rules than this are no part of a period.
+const MOST: f64 = 1e5;
+
+/// `A` of two states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::contact_equation) struct Block {
+    /// `A`
+    pub(in crate::contact_equation) matrix: Square,
+    /// `m`
+    mean: f64,
+    /// `D`
+    pub(in crate::contact_equation) deviation: Square,
+    /// `d`
+    square: f64,
+}
+
+/// `c` and `k` of (1).
+#[derive(Debug, Clone, Copy)]
+pub(in crate::contact_equation) struct Kernel {
+    pub(in crate::contact_equation) c: f64,
+    pub(in crate::contact_equation) k: f64,
+}
+
+/// The product of a matrix and two states.
+pub(in crate::contact_equation) fn times(a: Square, x: Pair) -> Pair {
+    [
+        a[0][0] * x[0] + a[0][1] * x[1],
+        a[1][0] * x[0] + a[1][1] * x[1],
+    ]
+}
+
+/// The product of two states as a row and a matrix.
+pub(in crate::contact_equation) fn row_times(x: Pair, a: Square) -> Pair {
+    [
+        x[0] * a[0][0] + x[1] * a[1][0],
+        x[0] * a[0][1] + x[1] * a[1][1],
+    ]
+}
+
+/// Adds a multiple.
+pub(in crate::contact_equation) fn add(to: &mut [f64], factor: f64, of: &[f64]) {
+    for (to, of) in to.iter_mut().zip(of) {
+        *to += factor * of;
+    }
+}
+
+/// Adds two multiples.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+pub(in crate::contact_equation) fn add_both([a, b]: [&[f64]; 2], [x, y]: [f64; 2], to: &mut [f64]) {
+    for ((to, a), b) in to.iter_mut().zip(a).zip(b) {
+        *to += x * a + y * b;
+    }
+}
+
+impl Block {
+    pub(in crate::contact_equation) fn new(matrix: Square) -> Self {
+        let mean = 0.5 * (matrix[0][0] + matrix[1][1]);
+        let mut deviation = matrix;
+        deviation[0][0] -= mean;
+        deviation[1][1] -= mean;
+        let square = deviation[0][0] * deviation[0][0] + deviation[0][1] * deviation[1][0];
+        Self {
+            matrix,
+            mean,
+            deviation,
+            square,
+        }
+    }
+
+    /// Both exponents are zero: `c = 1`, `k = s`.
+    pub(in crate::contact_equation) fn is_free(&self) -> bool {
+        self.mean == 0.0 && self.square == 0.0
+    }
+
+    /// Size of the faster exponent.
+    pub(in crate::contact_equation) fn rate(&self) -> f64 {
+        self.mean.abs() + self.square.abs().sqrt()
+    }
+
+    /// The faster of what decays, whether it oscillates or not.
+    pub(super) fn decay(&self) -> f64 {
+        self.mean.abs() + self.square.max(0.0).sqrt()
+    }
+
+    /// Squares of the sizes of both exponents, without those that are zero.
+    pub(in crate::contact_equation) fn squares(&self) -> impl Iterator<Item = f64> {
+        let product = (self.mean * self.mean - self.square).abs();
+        let larger = if self.square > 0.0 {
+            self.rate() * self.rate()
+        } else {
+            product
+        };
+        let smaller = product * product / larger;
+        [larger, smaller].into_iter().filter(|size| *size > 0.0)
+    }
+
+    /// Angular frequency of what oscillates; zero where nothing does.
+    pub(in crate::contact_equation) fn turns(&self) -> f64 {
+        (-self.square).max(0.0).sqrt()
+    }
+
+    /// (1)
+    pub(in crate::contact_equation) fn kernel(&self, s: f64) -> Kernel {
+        let x = self.square * s * s;
+        let (c, k) = if x.abs() < SMALL {
+            series(x, s)
+        } else if x > 0.0 {
+            // Both exponents at once, so that no factor overflows where they decay.
+            let root = self.square.sqrt();
+            let (plus, minus) = (
+                ((self.mean + root) * s).exp(),
+                ((self.mean - root) * s).exp(),
+            );
+            return Kernel {
+                c: 0.5 * (plus + minus),
+                k: 0.5 * (plus - minus) / root,
+            };
+        } else {
+            let root = (-self.square).sqrt();
+            let (sine, cosine) = (root * s).sin_cos();
+            (cosine, sine / root)
+        };
+        let decay = if self.mean == 0.0 {
+            1.0
+        } else {
+            (self.mean * s).exp()
+        };
+        Kernel {
+            c: decay * c,
+            k: decay * k,
+        }
+    }
+
+    /// `e^(A s)`
+    pub(in crate::contact_equation) fn exponential(&self, s: f64) -> Square {
+        let Kernel { c, k } = self.kernel(s);
+        let d = self.deviation;
+        [
+            [c + k * d[0][0], k * d[0][1]],
+            [k * d[1][0], c + k * d[1][1]],
+        ]
+    }
+
+    /// `(c I + k D) x`
+    pub(in crate::contact_equation) fn carried(&self, Kernel { c, k }: Kernel, x: Pair) -> Pair {
+        let turned = times(self.deviation, x);
+        [0, 1].map(|i| c * x[i] + k * turned[i])
+    }
+
+    /// `(c I + k D)(a I + b D)`, of a kernel and the coefficients of another such matrix.
+    pub(in crate::contact_equation) fn compose(
+        &self,
+        Kernel { c, k }: Kernel,
+        a: f64,
+        b: f64,
+    ) -> (f64, f64) {
+        (c * a + k * self.square * b, c * b + k * a)
+    }
+
+    /// The steady response to a wave of this frequency: `(i w - A)^-1 b`, and its derivative by the frequency; `None` where an exponent
+    /// is so near that the response from rest is all there is.
+    pub(in crate::contact_equation) fn steady(
+        &self,
+        frequency: f64,
+        input: [Complex<f64>; 2],
+    ) -> Option<[[Complex<f64>; 2]; 2]> {
+        let z = Complex::new(0.0, frequency) - self.mean;
+        let determinant = z * z - self.square;
+        let size = frequency * frequency + self.rate().powi(2);
+        if determinant.norm() <= NEAR * size || size == 0.0 {
+            return None;
+        }
+        let d = self.deviation;
+        let inverse = |x: [Complex<f64>; 2]| {
+            [
+                (z * x[0] + x[0] * d[0][0] + x[1] * d[0][1]) / determinant,
+                (z * x[1] + x[0] * d[1][0] + x[1] * d[1][1]) / determinant,
+            ]
+        };
+        let response = inverse(input);
+        let by = inverse(response).map(|x| x * Complex::new(0.0, -1.0));
+        Some([response, by])
+    }
+
+    /// (2) and its derivatives by the frequency: `p`, `r`, `dp`, `dr`.
+    pub(super) fn response_at_rest(&self, frequency: f64, s: f64) -> [Complex<f64>; 4] {
+        if self.is_free() && frequency == 0.0 {
+            let real = |x: f64| Complex::new(x, 0.0);
+            let slope = |x: f64| Complex::new(0.0, x);
+            let square = 0.5 * s * s;
+            return [
+                real(s),
+                real(square),
+                slope(square),
+                slope(square * s / 3.0),
+            ];
+        }
+        let wave = Complex::new(0.0, frequency);
+        let turn = (self.rate() + frequency) * s.abs();
+        let rules = (turn / TURN).ceil().max(1.0);
+        // Unknowns that belong to no motion: there the pass fails.
+        if rules > MOST {
+            return [Complex::new(f64::NAN, f64::NAN); 4];
+        }
+        let rule = gauss::rule(POINTS);
+        let mut r = Complex::new(0.0, 0.0);
+        let mut by = r;
+        let length = s / rules;
+        for part in 0..rules as usize {
+            for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
+                let u = length * (part as f64 + node);
+                let value = (wave * (s - u)).exp() * (length * weight * self.kernel(u).k);
+                r += value;
+                by += value * Complex::new(0.0, s - u);
+            }
+        }
+        let k = self.kernel(s).k;
+        let p = k + (wave - self.mean) * r;
+        let p_by = (wave - self.mean) * by + r * Complex::new(0.0, 1.0);
+        [p, r, p_by, by]
+    }
+}
+
+/// Exponents as near as this to a frequency, relative to both, are in resonance.
+const NEAR: f64 = 1e-5;
+
+/// `cosh sqrt(x)` and `s sinh sqrt(x) / sqrt(x)` for small `x` of either sign.
+fn series(x: f64, s: f64) -> (f64, f64) {
+    let c = 1.0
+        + x / 2.0
+            * (1.0
+                + x / 12.0
+                    * (1.0 + x / 30.0 * (1.0 + x / 56.0 * (1.0 + x / 90.0 * (1.0 + x / 132.0)))));
+    let k = 1.0
+        + x / 6.0
+            * (1.0
+                + x / 20.0
+                    * (1.0 + x / 42.0 * (1.0 + x / 72.0 * (1.0 + x / 110.0 * (1.0 + x / 156.0)))));
+    (c, s * k)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CASES: [Square; 6] = [
+        [[0.0, 1.0], [0.0, 0.0]],
+        [[0.0, 1.0], [-4.0, -0.2]],
+        [[0.0, 1.0], [-1.0, -2.0]],
+        [[0.0, 1.0], [-1.0, -7.0]],
+        [[-0.3, 2.0], [-2.0, -0.3]],
+        [[-0.5, 0.0], [0.0, -3.0]],
+    ];
+
+    #[test]
+    fn exponentials_are_those_of_the_series() {
+        for matrix in CASES {
+            let block = Block::new(matrix);
+            for s in [1e-3, 0.11, 0.8, 2.5] {
+                let a =
+                    nalgebra::Matrix2::new(matrix[0][0], matrix[0][1], matrix[1][0], matrix[1][1]);
+                let exact = (a * s).exp();
+                let found = block.exponential(s);
+                for i in 0..2 {
+                    for j in 0..2 {
+                        assert!(
+                            (found[i][j] - exact[(i, j)]).abs() < 1e-13,
+                            "{matrix:?} {s}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn responses_from_rest_are_steady_ones_less_what_dies() {
+        for matrix in &CASES[1..] {
+            let block = Block::new(*matrix);
+            let input = [Complex::new(0.2, 0.5), Complex::new(1.0, -0.3)];
+            let (frequency, s) = (1.3, 2.1);
+            let [steady, _] = block.steady(frequency, input).unwrap();
+            let [p, r, p_by, r_by] = block.response_at_rest(frequency, s);
+            let d = block.deviation;
+            let e = block.exponential(s);
+            let turn = Complex::new(0.0, frequency * s).exp();
+            for i in 0..2 {
+                let response = p * input[i] + r * (input[0] * d[i][0] + input[1] * d[i][1]);
+                let expected = turn * steady[i] - (steady[0] * e[i][0] + steady[1] * e[i][1]);
+                assert!((response - expected).norm() < 1e-13);
+            }
+            let h = 1e-5;
+            let [p1, r1, ..] = block.response_at_rest(frequency + h, s);
+            let [p0, r0, ..] = block.response_at_rest(frequency - h, s);
+            assert!(((p1 - p0) / (2.0 * h) - p_by).norm() < 1e-8);
+            assert!(((r1 - r0) / (2.0 * h) - r_by).norm() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn a_free_mass_under_a_constant_load_moves_on_a_parabola() {
+        let block = Block::new(CASES[0]);
+        let [p, r, p_by, r_by] = block.response_at_rest(0.0, 3.0);
+        assert!((p.re - 3.0).abs() < 1e-14 && (r.re - 4.5).abs() < 1e-14);
+        // By the rule for all others.
+        let [_, _, p_near, r_near] = block.response_at_rest(1e-9, 3.0);
+        assert!((p_by - p_near).norm() < 1e-7 && (r_by - r_near).norm() < 1e-7);
+    }
+}

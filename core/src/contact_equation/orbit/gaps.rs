@@ -1,0 +1,206 @@
+//! The gaps of a motion that is given at any phase: where they cross levels, and their extremes.
+//!
+//! Gap and rate are sampled 400 times in a period of the declaration. A rate that changes its sign between two samples has an extreme there,
+//! and a gap that changes sides of a level between two samples, or between one and an extreme, a crossing; both are located as roots. Two
+//! extremes between the same samples are not seen. That is enough to begin: switches are unknowns of the equations that are made then, and
+//! the extremes of the orbit that solves them are looked for anew, by [`extremes`](super::extremes).
+//!
+//! Half of the second derivative at an extreme is taken from rates on both sides,
+//!
+//! ```text
+//! g''/2 = (g'(tau + d) - g'(tau - d)) / (4 d) + O(d^2)                                                         (1)
+//! ```
+//!
+//! Source: Abramowitz and Stegun (1964), Handbook of Mathematical Functions, section 25.3 (numerical differentiation).
+
+use crate::contact_equation::equations::passed::GapExtreme;
+use crate::contact_equation::linear_part::values::{Instant, Values};
+use crate::contact_equation::skeleton::placement::{Placed, Switch, Told};
+use crate::numeric::roots::{self, Place};
+
+/// Samples in a period of the declaration.
+const SAMPLES: f64 = 400.0;
+/// Where a period begins, in parts of the way between two switches, or of the period where there are none: not where a motion that is
+/// symmetric in time turns.
+const ASIDE: f64 = 0.46;
+const ANYWHERE: f64 = 0.0217;
+/// Phase over which a gap is differentiated twice.
+pub(in crate::contact_equation) const BEND: f64 = 1e-3;
+
+/// Positions and velocities at a phase.
+pub(in crate::contact_equation) type At<'a> = &'a dyn Fn(f64, &mut [f64]);
+
+/// Gaps of a motion that is given by samples.
+pub(in crate::contact_equation) struct Gaps<'a> {
+    pub(in crate::contact_equation) values: &'a Values,
+    pub(in crate::contact_equation) at: At<'a>,
+    pub(in crate::contact_equation) coordinates: usize,
+}
+
+impl Gaps<'_> {
+    /// Positions and velocities at a phase.
+    pub(in crate::contact_equation) fn state(&self, phase: f64) -> Vec<f64> {
+        let mut state = vec![0.0; 2 * self.coordinates];
+        (self.at)(phase, &mut state);
+        state
+    }
+
+    /// States of the linear part at a phase.
+    fn states(&self, phase: f64) -> Vec<f64> {
+        self.values.linear.states(&self.state(phase))
+    }
+
+    /// Gap and rate by the time.
+    pub(in crate::contact_equation) fn gap(&self, contact: usize, phase: f64) -> [f64; 2] {
+        let states = self.states(phase);
+        let mut rows: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; states.len()]);
+        let instant = Instant {
+            tau: phase,
+            base: self.values.base,
+            by_omega: 0.0,
+        };
+        let [gap, rate, another] = &mut rows;
+        let contact = &self.values.contacts[contact];
+        let output = contact.output(instant, &states, [gap, rate], another);
+        [output.gap, output.rate]
+    }
+
+    /// (1), by the phase.
+    pub(in crate::contact_equation) fn bend(&self, contact: usize, phase: f64) -> f64 {
+        let rate = |phase: f64| self.gap(contact, phase)[1];
+        (rate(phase + BEND) - rate(phase - BEND)) / (4.0 * BEND * self.values.base)
+    }
+}
+
+/// Crossings of levels and extremes of all gaps from a phase on, from samples.
+pub(in crate::contact_equation) fn seen(
+    gaps: &Gaps<'_>,
+    from: f64,
+    length: f64,
+) -> (Vec<Placed>, Vec<GapExtreme>) {
+    let (mut crossings, mut extremes) = (Vec::new(), Vec::new());
+    for (contact, of) in gaps.values.contacts.iter().enumerate() {
+        if !of.levels.is_empty() {
+            look(gaps, contact, [from, length], &mut crossings, &mut extremes);
+        }
+    }
+    (crossings, extremes)
+}
+
+/// The same of one gap.
+fn look(
+    gaps: &Gaps<'_>,
+    contact: usize,
+    [from, length]: [f64; 2],
+    crossings: &mut Vec<Placed>,
+    extremes: &mut Vec<GapExtreme>,
+) {
+    let levels = &gaps.values.contacts[contact].levels;
+    let samples = (SAMPLES * length / std::f64::consts::TAU).ceil() as usize;
+    let at = |index: usize| {
+        let phase = from + length * (index as f64 / samples as f64);
+        (phase, gaps.gap(contact, phase))
+    };
+    let mut before = at(0);
+    for index in 1..=samples {
+        let next = at(index);
+        let within = 1e-12 * length;
+        // Between two samples the gap is followed to its extreme and from there.
+        let mut ends = vec![before];
+        if before.1[1] * next.1[1] < 0.0 {
+            let [a, b] = [before, next].map(|(x, gap)| Place { x, value: gap[1] });
+            if let Some(phase) = roots::root(a, b, within, |x| gaps.gap(contact, x)[1]) {
+                let gap = gaps.gap(contact, phase);
+                extremes.push(GapExtreme {
+                    contact,
+                    interval: 0,
+                    phase,
+                    gap: gap[0],
+                    maximum: a.value > 0.0,
+                });
+                ends.push((phase, gap));
+            }
+        }
+        ends.push(next);
+        for pair in ends.windows(2) {
+            for (level, value) in levels.iter().enumerate() {
+                let [a, b] = [pair[0], pair[1]].map(|(x, gap)| Place {
+                    x,
+                    value: gap[0] - value,
+                });
+                if (a.value > 0.0) == (b.value > 0.0) {
+                    continue;
+                }
+                let root = roots::root(a, b, within, |x| gaps.gap(contact, x)[0] - value);
+                crossings.push(Placed {
+                    switch: Switch {
+                        contact,
+                        level,
+                        rises: b.value > 0.0,
+                        told: Told::Alone,
+                    },
+                    phase: root.unwrap_or(b.x),
+                });
+            }
+        }
+        before = next;
+    }
+}
+
+/// How far an extreme is from the nearest one of the other kind of its gap. Two that meet are none any more.
+pub(in crate::contact_equation) fn room(
+    extreme: &GapExtreme,
+    extremes: &[GapExtreme],
+    length: f64,
+) -> f64 {
+    extremes
+        .iter()
+        .filter(|other| other.contact == extreme.contact && other.maximum != extreme.maximum)
+        .map(|other| apart(other.phase, extreme.phase, length).abs())
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// The piece that a gap is on.
+pub(in crate::contact_equation) fn piece(gaps: &Gaps<'_>, contact: usize, phase: f64) -> usize {
+    let gap = gaps.gap(contact, phase)[0];
+    let levels = gaps.values.contacts[contact].levels.iter();
+    levels.filter(|level| gap > **level).count()
+}
+
+/// In the middle of the longest way between two of these phases, of those where all gaps are at their lowest if there are any.
+pub(in crate::contact_equation) fn beginning(
+    gaps: &Gaps<'_>,
+    length: f64,
+    phases: impl Iterator<Item = f64>,
+) -> f64 {
+    let mut phases: Vec<f64> = phases.map(|phase| phase.rem_euclid(length)).collect();
+    phases.sort_by(f64::total_cmp);
+    let Some(last) = phases.last() else {
+        return ANYWHERE * length;
+    };
+    let mut from = last - length;
+    let mut best = (0.0, 0.0);
+    for phase in phases {
+        let way = phase - from;
+        let middle = from + ASIDE * way;
+        let open = (0..gaps.values.contacts.len()).all(|contact| {
+            gaps.values.contacts[contact].levels.is_empty() || piece(gaps, contact, middle) == 0
+        });
+        let worth = if open { 2.0 * way } else { way };
+        if worth > best.0 {
+            best = (worth, middle);
+        }
+        from = phase;
+    }
+    best.1.rem_euclid(length)
+}
+
+/// How far a phase is from another one, around a period of this length.
+pub(in crate::contact_equation) fn apart(phase: f64, from: f64, length: f64) -> f64 {
+    let ahead = (phase - from).rem_euclid(length);
+    if ahead > 0.5 * length {
+        ahead - length
+    } else {
+        ahead
+    }
+}

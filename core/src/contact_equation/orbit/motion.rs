@@ -1,0 +1,306 @@
+//! The motion of an orbit at any phase, by (1) of [`equations`](crate::contact_equation::equations): what forces have done is known at the nodes and the end
+//! of an interval, and between these by a polynomial, or, of pairs of states too fast for it, by [`partway`](crate::contact_equation::collocation::partway).
+//!
+//! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, equation (4.2).
+
+use std::cell::RefCell;
+
+use crate::contact_equation::collocation::nodes::{Nodes, points_for};
+use crate::contact_equation::collocation::partway::Partway;
+use crate::contact_equation::equations::Equations;
+use crate::contact_equation::equations::passed::{Extremes, Passed};
+use crate::contact_equation::linear_part::block::{Block, times};
+use crate::contact_equation::linear_part::configuration::Configuration;
+use crate::contact_equation::linear_part::values::{Contact, Instant, Values, pair};
+use crate::time;
+
+/// The motion that the last pass has left.
+pub(in crate::contact_equation) struct Motion<'e> {
+    pub(in crate::contact_equation) equations: &'e Equations,
+    room: RefCell<Room>,
+}
+
+/// Room for one instant.
+struct Room {
+    states: Vec<f64>,
+    rows: [Vec<f64>; 3],
+    weights: Vec<f64>,
+    steady: Vec<f64>,
+    /// States of a configuration.
+    own: Vec<f64>,
+    partway: Partway,
+}
+
+impl<'e> Motion<'e> {
+    pub(in crate::contact_equation) fn of(equations: &'e Equations) -> Self {
+        let states = || vec![0.0; equations.skeleton.order];
+        let room = Room {
+            states: states(),
+            rows: std::array::from_fn(|_| states()),
+            weights: Vec::new(),
+            steady: states(),
+            own: states(),
+            partway: Partway::default(),
+        };
+        Self {
+            equations,
+            room: RefCell::new(room),
+        }
+    }
+
+    /// Number of intervals.
+    pub(in crate::contact_equation) fn intervals(&self) -> usize {
+        self.equations.passed.len()
+    }
+
+    /// Where an interval begins and ends.
+    pub(in crate::contact_equation) fn phases(&self, interval: usize) -> [f64; 2] {
+        self.equations.passed[interval].phases
+    }
+
+    /// Writes positions and velocities at any phase.
+    pub(in crate::contact_equation) fn at(&self, phase: f64, state: &mut [f64]) {
+        let skeleton = &self.equations.skeleton;
+        let (interval, within) = self.interval(phase);
+        self.state(interval, within, state);
+        let image = &skeleton.recurrence().image;
+        if !image.is_identity() {
+            let turns = ((phase - within) / skeleton.length).round() as i64;
+            let turns = turns.rem_euclid(image.order() as i64) as usize;
+            let moved = image.power(turns).of_states(state, state.len() / 2);
+            state.copy_from_slice(&moved);
+        }
+    }
+
+    /// The interval that a phase is in; phases outside of what is followed are shifted into it.
+    pub(in crate::contact_equation) fn interval(&self, phase: f64) -> (usize, f64) {
+        let (begin, length) = (
+            self.equations.skeleton.begin,
+            self.equations.skeleton.length,
+        );
+        let phase = begin + (phase - begin).rem_euclid(length);
+        let passed = self.equations.passed.iter();
+        let mut found = 0;
+        for (index, passed) in passed.enumerate() {
+            if passed.phases[0] <= phase && passed.phases[1] > passed.phases[0] {
+                found = index;
+            }
+        }
+        (found, phase)
+    }
+
+    /// Writes the states within an interval.
+    fn write(&self, interval: usize, phase: f64, room: &mut Room) {
+        let Equations {
+            skeleton, passed, ..
+        } = self.equations;
+        let configuration = self.configuration(interval);
+        let values = self.values(interval);
+        let (of, passed) = (&skeleton.intervals[interval], &passed[interval]);
+        let [from, to] = passed.phases;
+        let time = (phase - from) / values.base;
+        let psi = if to > from {
+            (phase - from) / (to - from)
+        } else {
+            0.0
+        };
+        values.write_steady(phase, &mut room.steady, None);
+        for (r, block) in values.linear.blocks.iter().enumerate() {
+            let free = times(block.exponential(time), pair(&passed.free, r));
+            for i in 0..2 {
+                let at = 2 * r + i;
+                room.states[at] = free[i] + room.steady[at];
+            }
+        }
+        if !of.active.is_empty() && !passed.forced.is_empty() {
+            self.add_forced(of.nodes, passed, psi, room);
+        }
+        values.add_resonant(from, time, &mut room.states);
+        if let Some(of) = configuration {
+            of.give(&room.states, &mut room.own);
+            std::mem::swap(&mut room.states, &mut room.own);
+        }
+    }
+
+    /// What has the forces of an interval, where they are affine.
+    fn configuration(&self, interval: usize) -> Option<&'e Configuration> {
+        let of = &self.equations.skeleton.intervals[interval];
+        of.configuration
+            .map(|index| &self.equations.configurations[index])
+    }
+
+    /// The linear part on an interval.
+    fn values(&self, interval: usize) -> &'e Values {
+        let own = &self.equations.values;
+        self.configuration(interval).map_or(own, |of| &of.values)
+    }
+
+    /// Adds what the forces of an interval have done to the states up to a part of it. Of slow pairs the polynomial through what is known at the
+    /// targets tells it. Fast ones ring between the targets, and are followed there: with (1) of [`integrals`](crate::contact_equation::equations::integrals), up to
+    /// any place.
+    fn add_forced(&self, nodes: &'static Nodes, passed: &Passed, psi: f64, room: &mut Room) {
+        let Equations {
+            values, skeleton, ..
+        } = self.equations;
+        let order = skeleton.order;
+        let whole = (passed.phases[1] - passed.phases[0]) / values.base;
+        let blocks = &values.linear.blocks;
+        let turns = |block: &Block| block.rate() * whole.abs();
+        let fastest = blocks.iter().map(turns).fold(0.0, f64::max);
+        if !nodes.follows(fastest) {
+            let turn = fastest * nodes.widest();
+            nodes.partway(psi, points_for(turn), &mut room.partway);
+        }
+        nodes.through_ends(psi, &mut room.weights);
+        for (r, block) in blocks.iter().enumerate() {
+            if !nodes.follows(turns(block)) {
+                let n = nodes.count();
+                let load = &passed.load[2 * r * n..][..2 * n];
+                let known = room.partway.done.map_or([0.0; 2], |target| {
+                    pair(&passed.forced[target * order..][..order], r)
+                });
+                let forced = room
+                    .partway
+                    .carry(block, whole, known, load.split_at(n).into());
+                room.states[2 * r] += forced[0];
+                room.states[2 * r + 1] += forced[1];
+                continue;
+            }
+            for at in 2 * r..2 * r + 2 {
+                let targets = passed.forced.chunks_exact(order);
+                let pairs = room.weights.iter().zip(targets);
+                room.states[at] += pairs
+                    .map(|(weight, forced)| weight * forced[at])
+                    .sum::<f64>();
+            }
+        }
+    }
+
+    /// Gap of a contact and its slope by the phase, within an interval.
+    pub(in crate::contact_equation) fn gap(
+        &self,
+        contact: usize,
+        interval: usize,
+        phase: f64,
+    ) -> [f64; 2] {
+        let room = &mut *self.room.borrow_mut();
+        self.write(interval, phase, room);
+        self.gap_in(contact, phase, &room.states, &mut room.rows)
+    }
+
+    /// The same in these states.
+    pub(super) fn gap_of(&self, contact: usize, phase: f64, states: &[f64]) -> [f64; 2] {
+        let room = &mut *self.room.borrow_mut();
+        self.gap_in(contact, phase, states, &mut room.rows)
+    }
+
+    fn gap_in(
+        &self,
+        contact: usize,
+        tau: f64,
+        states: &[f64],
+        rows: &mut [Vec<f64>; 3],
+    ) -> [f64; 2] {
+        let values = &self.equations.values;
+        let base = values.base;
+        let instant = Instant {
+            tau,
+            base,
+            by_omega: 0.0,
+        };
+        let [gap, rate, another] = rows;
+        let output = values.contacts[contact].output(instant, states, [gap, rate], another);
+        [output.gap, output.rate / base]
+    }
+
+    /// Writes positions and velocities at a phase within an interval.
+    pub(in crate::contact_equation) fn state(
+        &self,
+        interval: usize,
+        phase: f64,
+        state: &mut [f64],
+    ) {
+        let room = &mut *self.room.borrow_mut();
+        self.write(interval, phase, room);
+        let linear = &self.equations.values.linear;
+        let n = state.len() / 2;
+        for (i, x) in state.iter_mut().enumerate() {
+            let row = if i < n {
+                linear.positions.row(i)
+            } else {
+                linear.velocities.row(i - n)
+            };
+            *x = row.iter().zip(&room.states).map(|(a, y)| a * y).sum();
+        }
+    }
+
+    /// A coordinate and its velocity, within an interval.
+    pub(in crate::contact_equation) fn coordinate(
+        &self,
+        index: usize,
+        interval: usize,
+        phase: f64,
+    ) -> [f64; 2] {
+        let room = &mut *self.room.borrow_mut();
+        self.write(interval, phase, room);
+        self.coordinate_of(index, &room.states)
+    }
+
+    /// A coordinate and its velocity in these states.
+    pub(super) fn coordinate_of(&self, index: usize, states: &[f64]) -> [f64; 2] {
+        let linear = &self.equations.values.linear;
+        [&linear.positions, &linear.velocities].map(|matrix| {
+            let row = matrix.row(index);
+            row.iter().zip(states).map(|(a, y)| a * y).sum()
+        })
+    }
+
+    /// Writes the states at a phase within an interval.
+    pub(in crate::contact_equation) fn states(
+        &self,
+        interval: usize,
+        phase: f64,
+        states: &mut [f64],
+    ) {
+        let room = &mut *self.room.borrow_mut();
+        self.write(interval, phase, room);
+        states.copy_from_slice(&room.states);
+    }
+
+    /// Extremes of the coordinates and of the gaps. They are looked for once.
+    pub(in crate::contact_equation) fn extremes(&self) -> &'e Extremes {
+        self.equations.extremes.get_or_init(|| Extremes::of(self))
+    }
+
+    /// Periods in a unit of phase of the fastest that the linear part and its load do on an interval.
+    pub(super) fn fastest(&self, interval: usize) -> f64 {
+        let contacts = &self.equations.values.contacts;
+        let values = self.values(interval);
+        let modes = values
+            .linear
+            .blocks
+            .iter()
+            .map(|block| block.turns() / values.base);
+        let waves = values.load.iter().map(|wave| wave.harmonic);
+        // A gap whose direction moves has the sum of both.
+        let gaps = contacts.iter().map(Contact::harmonic);
+        let moving = gaps.fold(0.0, f64::max);
+        (moving + modes.chain(waves).fold(1.0, f64::max)) / std::f64::consts::TAU
+    }
+}
+
+/// One interval as a stretch of motion.
+pub(in crate::contact_equation) struct Within<'m, 'e> {
+    pub(in crate::contact_equation) motion: &'m Motion<'e>,
+    pub(in crate::contact_equation) interval: usize,
+}
+
+impl time::Stretch for Within<'_, '_> {
+    fn phases(&self) -> (f64, f64) {
+        self.motion.phases(self.interval).into()
+    }
+
+    fn state(&self, phase: f64, state: &mut [f64]) {
+        self.motion.state(self.interval, phase, state);
+    }
+}

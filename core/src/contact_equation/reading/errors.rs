@@ -1,0 +1,217 @@
+//! How far two orbits are apart in what the error is of, and what that is measured by.
+//!
+//! Of an orbit `x` and a finer one `y` the extremes differ, to first order, by as much as the motions where that of the first is, at `t`:
+//!
+//! ```text
+//! max y - max x = y(t) - x(t) + O(y'(t)^2)                                                                     (1)
+//! ```
+//!
+//! That may vanish by chance. So the motions are compared at 24 phases as well where an error is to serve for orbits near by.
+//!
+//! Source: Danskin (1967), The Theory of Max-Min and its Application to Weapons Allocation Problems (derivatives of a largest value).
+
+use nalgebra::DMatrix;
+
+use crate::branches::moduli::multipliers;
+use crate::branches::observed::{EXTREMES, Motion as Extent, Observed};
+use crate::branches::point::Point;
+use crate::contact_equation::equations::Equations;
+use crate::contact_equation::orbit::motion::Motion;
+use crate::contact_equation::run::{DIFFERENCE, Run};
+use crate::continuation::follow::CurvePoint;
+use crate::numeric::roots::Place;
+use crate::numeric::spectrum::distance;
+use crate::orbit::observe::Accuracy;
+
+/// Roundings of an output in a configuration.
+const ROUNDINGS: f64 = 8.0;
+/// Phases at which two motions are compared.
+const COMPARED: usize = 24;
+
+/// How fast things change with what is varied.
+pub(in crate::contact_equation) struct Steepness {
+    pub(in crate::contact_equation) peak_to_peak: f64,
+    pub(in crate::contact_equation) multipliers: f64,
+}
+
+impl Steepness {
+    /// How far both move where what is varied is shifted.
+    pub(in crate::contact_equation) fn along(&self, shift: f64) -> [f64; 2] {
+        [self.peak_to_peak, self.multipliers].map(|steepness| {
+            if shift == 0.0 {
+                0.0
+            } else {
+                steepness * shift.abs()
+            }
+        })
+    }
+}
+
+impl Run<'_> {
+    /// How peak-to-peak and, with the map of these unknowns, multipliers change with what is varied, along the tangent.
+    pub(in crate::contact_equation) fn steepness(
+        &mut self,
+        at: &CurvePoint,
+        point: &Point,
+        map: Option<&DMatrix<f64>>,
+    ) -> Option<Steepness> {
+        let accuracy = self.accuracy();
+        let extremes = self.equations.extremes.get()?.coordinates.clone();
+        let slope = at.parameter_slope();
+        let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
+        let moved = at.u.iter().zip(&at.tangent);
+        let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
+        let multipliers = if let Some(map) = map {
+            let parts = self.equations.skeleton.recurrence().parts;
+            let there = self.equations.map(&moved);
+            there.map_or(f64::INFINITY, |there| {
+                let [here, there] = [map, &there].map(|map| multipliers(map, parts));
+                distance(&here, &there)
+            })
+        } else {
+            self.equations.compute(&moved, false);
+            0.0
+        };
+        let known = !self.equations.failed && slope != 0.0;
+        let apart = known.then(|| {
+            if let Accuracy::Output(_) = accuracy {
+                let value = moved[moved.len() - 1];
+                self.changed(point, &self.outputs(&self.equations, value, false))
+            } else {
+                apart(&self.equations, &extremes, accuracy)
+            }
+        });
+        self.equations.compute(&at.u, false);
+        let by = (step * slope).abs();
+        apart.map(|apart| Steepness {
+            peak_to_peak: apart / by,
+            multipliers: multipliers / by,
+        })
+    }
+
+    /// How much of an output is rounding of the states of the last pass.
+    pub(in crate::contact_equation) fn noise(&self, point: &Point) -> f64 {
+        match self.accuracy() {
+            Accuracy::Output(output) => {
+                let others = self.outputs(&self.equations, point.value, true);
+                let changed = self.changed(point, &others);
+                if self.equations.configurations.is_empty() {
+                    return changed;
+                }
+                // States of configurations are taken over and given back: twice as many roundings, of which finer equations show none.
+                let own = point.observed.outputs.get(output);
+                2.0 * changed + ROUNDINGS * f64::EPSILON * own.map_or(0.0, Extent::farthest)
+            }
+            Accuracy::Coordinates | Accuracy::Coordinate(_) => 0.0,
+        }
+    }
+
+    /// How far the output that the error is of is from that among others.
+    fn changed(&self, point: &Point, others: &[Extent]) -> f64 {
+        let Accuracy::Output(output) = self.accuracy() else {
+            return f64::NAN;
+        };
+        let pair = point.observed.outputs.get(output).zip(others.get(output));
+        pair.map_or(f64::NAN, |(own, there)| own.apart(there))
+    }
+
+    /// What errors are measured by: what they are of, and the largest coordinate for one that is at rest.
+    pub(in crate::contact_equation) fn size(&self, point: &Point, noise: f64) -> f64 {
+        let Observed {
+            motions, outputs, ..
+        } = &point.observed;
+        let largest = Accuracy::Coordinates.peak_to_peak(&point.observed);
+        match self.accuracy() {
+            Accuracy::Coordinates => largest,
+            Accuracy::Coordinate(index) => {
+                let own = motions.get(index);
+                let rounding = motions.iter().map(Extent::farthest).fold(0.0, f64::max);
+                let noise = EXTREMES * f64::EPSILON * rounding;
+                own.filter(|own| !own.is_at_rest(noise))
+                    .map_or(largest, Extent::peak_to_peak)
+            }
+            Accuracy::Output(index) => {
+                let own = outputs.get(index);
+                own.map_or(f64::NAN, |own| own.measure(noise))
+            }
+        }
+    }
+
+    /// What the error is of.
+    pub(in crate::contact_equation) fn accuracy(&self) -> Accuracy {
+        self.problem.asked.accuracy
+    }
+
+    /// How far a finer orbit at a value is from this one in what the error is of.
+    pub(in crate::contact_equation) fn apart(
+        &self,
+        finer: &Equations,
+        point: &Point,
+        value: f64,
+    ) -> f64 {
+        let accuracy = self.accuracy();
+        if let Accuracy::Output(_) = accuracy {
+            return self.changed(point, &self.outputs(finer, value, false));
+        }
+        let motions = self.equations.extremes.get();
+        apart(
+            finer,
+            motions.map_or(&[][..], |found| &found.coordinates),
+            accuracy,
+        )
+    }
+
+    /// The same, since the last point.
+    pub(in crate::contact_equation) fn rise(&self, point: &Point) -> f64 {
+        self.record.points.last().map_or(0.0, |last| {
+            let by = (point.value - last.value).abs();
+            if by > 0.0 {
+                let of = |point: &Point| match self.accuracy() {
+                    Accuracy::Coordinates => point.peak_to_peak(),
+                    one => one.peak_to_peak(&point.observed),
+                };
+                (of(point) - of(last)).abs() / by
+            } else {
+                0.0
+            }
+        })
+    }
+}
+
+/// How far a finer orbit is from where the coordinates of another one, or the one that the error is of, are smallest and largest: the error
+/// of these values, by (1).
+fn apart(finer: &Equations, extremes: &[[Place; 2]], accuracy: Accuracy) -> f64 {
+    let motion = Motion::of(finer);
+    let mut state = vec![0.0; finer.skeleton.order];
+    let mut off = |coordinate: usize, place: &Place| {
+        motion.at(place.x, &mut state);
+        state[coordinate] - place.value
+    };
+    let counts = |index: usize| match accuracy {
+        Accuracy::Coordinate(one) => index == one,
+        Accuracy::Coordinates | Accuracy::Output(_) => true,
+    };
+    let pairs = extremes.iter().enumerate();
+    let pairs = pairs.filter(|(index, _)| counts(*index));
+    let apart = pairs.map(|(coordinate, [low, high])| off(coordinate, high) - off(coordinate, low));
+    apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
+}
+
+/// The largest difference of a coordinate between two motions.
+pub(super) fn everywhere(equations: [&Equations; 2]) -> f64 {
+    let motions = equations.map(Motion::of);
+    let skeleton = &equations[0].skeleton;
+    let coordinates = equations[0].values.linear.positions.nrows();
+    let mut states = [vec![0.0; 2 * coordinates], vec![0.0; 2 * coordinates]];
+    let mut most = 0.0_f64;
+    for sample in 0..COMPARED {
+        let phase = skeleton.begin + skeleton.length * (sample as f64 / COMPARED as f64);
+        for (motion, state) in motions.iter().zip(&mut states) {
+            let (interval, phase) = motion.interval(phase);
+            motion.state(interval, phase, state);
+        }
+        let pairs = states[0].iter().zip(&states[1]).take(coordinates);
+        most = pairs.fold(most, |most, (a, b)| most.max((a - b).abs()));
+    }
+    most
+}

@@ -1,0 +1,105 @@
+//! What a branch has gathered, and the equations that it is followed by: what finer ones have shown of errors ([`screened`]), and which contacts
+//! are in each other's place when an orbit has come back ([`images`]). What is read off an orbit is in [`reading`](super::reading), how other
+//! equations come about in [`switches`](super::switches).
+
+pub(super) mod images;
+pub(super) mod screened;
+
+use self::screened::Screened;
+use super::branch::resume_state::Rest;
+use super::equations::Equations;
+use super::equations::setting::Frame;
+use super::orbit::gaps::{At, Gaps};
+use super::orbit::motion::Motion;
+use super::problem::ContactProblem;
+use crate::branches::record::Record;
+use crate::branches::recurrence::Recurrence;
+use crate::continuation::statistics::Statistics;
+
+/// Tangents in other unknowns are differences over so much of the largest entry.
+pub(super) const DIFFERENCE: f64 = 1e-5;
+
+/// An extreme belongs to a pair of switches whose middle is as near, in parts of the phase to the next extreme if that is less than one.
+pub(super) const SAME: f64 = 0.3;
+
+/// What a branch has gathered, and the equations that it is followed by.
+pub(super) struct Run<'r> {
+    pub(super) problem: &'r ContactProblem,
+    pub(super) frame: Frame,
+    /// Place among the resolutions.
+    pub(super) resolution: usize,
+    pub(super) equations: Equations,
+    /// The same orbits with more nodes, made when they are asked for.
+    pub(super) finer: Option<Equations>,
+    /// What the last of them has said.
+    pub(super) screened: Option<Screened>,
+    pub(super) record: Record,
+    pub(super) statistics: Statistics,
+    /// What the branch has met.
+    pub(super) joined: Option<Recurrence>,
+    /// Where it was before the last step.
+    pub(super) rest: Option<Box<Rest>>,
+}
+
+impl<'r> Run<'r> {
+    pub(super) fn new(
+        problem: &'r ContactProblem,
+        frame: Frame,
+        resolution: usize,
+        equations: Equations,
+    ) -> Self {
+        Self {
+            problem,
+            frame,
+            resolution,
+            equations,
+            finer: None,
+            screened: None,
+            record: Record::default(),
+            statistics: Statistics::default(),
+            joined: None,
+            rest: None,
+        }
+    }
+
+    /// What it remembers beside its equations: what was varied where finer ones were made, and what these have said.
+    pub(super) fn memory(&self) -> (Option<f64>, Option<Screened>) {
+        let finer = self.finer.as_ref().map(|finer| finer.made);
+        (finer, self.screened.clone())
+    }
+
+    /// Remembers that.
+    pub(super) fn remember(&mut self, finer: Option<f64>, screened: Option<Screened>) {
+        self.finer = finer.and_then(|made| self.equations.finer_equations(made));
+        self.screened = screened;
+    }
+
+    /// Forgets the finer equations, since there are others.
+    pub(super) fn clear_finer(&mut self) {
+        self.finer = None;
+        self.screened = None;
+    }
+
+    pub(super) fn gaps<'g>(&'g self, at: At<'g>) -> Gaps<'g> {
+        Gaps {
+            values: &self.equations.values,
+            at,
+            coordinates: self.equations.values.linear.positions.nrows(),
+        }
+    }
+
+    /// Looks at the motion at unknowns of the present equations.
+    pub(super) fn at<T>(
+        &mut self,
+        u: &[f64],
+        look: impl FnOnce(&Motion<'_>, &Gaps<'_>) -> Option<T>,
+    ) -> Option<T> {
+        self.equations.compute(u, false);
+        if self.equations.failed {
+            return None;
+        }
+        let motion = Motion::of(&self.equations);
+        let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
+        look(&motion, &self.gaps(&at))
+    }
+}

@@ -1,0 +1,211 @@
+//! A skeleton from the switches of an orbit: intervals from cut to cut, panels of long ones, and the grading of nodes by the exponents that
+//! the force has at a switch.
+
+use std::f64::consts::TAU;
+
+use super::Skeleton;
+use super::interval::{Active, Cut, Interval, Mark};
+use super::phases::Opening;
+use super::placement::{Placement, Switch};
+use crate::contact_equation::collocation::grading::STEEPEST;
+use crate::contact_equation::collocation::nodes::Nodes;
+use crate::contact_equation::linear_part::configuration::Configuration;
+use crate::contact_equation::linear_part::values::{Contact, Values};
+use crate::law::{Law, Quantity, Variation};
+use crate::numeric::fourier::grading;
+use crate::system::System;
+
+impl Skeleton {
+    /// From the switches of an orbit, in the order of time from its beginning on.
+    pub(in crate::contact_equation) fn new(
+        system: &dyn System,
+        values: &Values,
+        placement: Placement,
+    ) -> Self {
+        let contacts = &values.contacts;
+        let Placement {
+            beginning, placed, ..
+        } = placement.clone();
+        let mut skeleton = Self {
+            begin: beginning.phase,
+            length: beginning.length(),
+            order: values.order(),
+            switches: placed.iter().map(|placed| placed.switch).collect(),
+            openings: placed
+                .iter()
+                .map(|placed| opening(system, contacts, &placed.switch))
+                .collect(),
+            intervals: Vec::new(),
+            configurations: Vec::new(),
+            forces: 0,
+            placement,
+        };
+        let end = beginning.phase + beginning.length();
+        let mut pieces = beginning.pieces;
+        let (mut from, mut phase) = (Cut::Begin, beginning.phase);
+        let ends = placed
+            .iter()
+            .enumerate()
+            .map(|(index, placed)| (Some(index), placed.phase));
+        for (ends, next) in ends.chain([(None, end)]) {
+            let to = ends.map_or(Cut::End, Cut::Switch);
+            let way = Way {
+                cuts: [from, to],
+                length: next - phase,
+                pieces: &pieces,
+                ends,
+            };
+            skeleton.add(system, values, &way);
+            if let Some(index) = ends {
+                let Switch {
+                    contact,
+                    level,
+                    rises,
+                    ..
+                } = skeleton.switches[index];
+                pieces[contact] = level + usize::from(rises);
+            }
+            (from, phase) = (to, next);
+        }
+        skeleton
+    }
+
+    /// Adds what lies between two cuts, in as many panels as its length asks for.
+    fn add(&mut self, system: &dyn System, values: &Values, way: &Way<'_>) {
+        let contacts = &values.contacts;
+        let (active, configuration) = self.forced(system, values, way.pieces);
+        let panels = if active.is_empty() {
+            1
+        } else {
+            let whole = self.length.min(TAU);
+            let asked = self.placement.resolution.panels as f64 * way.length / whole;
+            let asked = asked.ceil().max(1.0) as usize;
+            // Half of a period then has the nodes of the other half: what is its image stays that, and where this symmetry breaks branches cross.
+            if way.cuts == [Cut::Begin, Cut::End] {
+                asked.next_multiple_of(2)
+            } else {
+                asked
+            }
+        };
+        let [first, last] = way.cuts.map(|cut| self.steepness(system, contacts, cut));
+        let [from, to] = way.cuts;
+        for panel in 0..panels {
+            let mark = |index: usize| match index {
+                0 => Mark::at(from),
+                index if index == panels => Mark::at(to),
+                index => Mark {
+                    from,
+                    to,
+                    part: index as f64 / panels as f64,
+                },
+            };
+            let grading = [
+                if panel == 0 { first } else { 1 },
+                if panel + 1 == panels { last } else { 1 },
+            ];
+            let nodes = Nodes::of(self.placement.resolution.nodes, grading);
+            let unknown = self.order + self.switches.len() + self.forces;
+            let of = |(place, contact): (usize, &usize)| Active {
+                contact: *contact,
+                piece: way.pieces[*contact],
+                first: unknown + place * nodes.count(),
+            };
+            let active: Vec<Active> = active.iter().enumerate().map(of).collect();
+            self.forces += active.len() * nodes.count();
+            self.intervals.push(Interval {
+                from: mark(panel),
+                to: mark(panel + 1),
+                pieces: way.pieces.to_vec(),
+                active,
+                configuration,
+                nodes,
+                ends: way.ends.filter(|_| panel + 1 == panels),
+            });
+        }
+    }
+
+    /// Contacts whose forces are unknown where they are on these pieces, and the configuration that has the forces, if there is one.
+    fn forced(
+        &mut self,
+        system: &dyn System,
+        values: &Values,
+        pieces: &[usize],
+    ) -> (Vec<usize>, Option<usize>) {
+        let has_force = |contact: &usize| {
+            let law = system.law(values.contacts[*contact].law);
+            law.facts().pieces[pieces[*contact]].force != Variation::Zero
+        };
+        let active: Vec<usize> = (0..pieces.len()).filter(has_force).collect();
+        if active.is_empty() {
+            return (active, None);
+        }
+        match self.configuration(system, values, pieces) {
+            None => (active, None),
+            known => (Vec::new(), known),
+        }
+    }
+
+    /// The configuration with contacts on these pieces, if their forces are affine.
+    fn configuration(
+        &mut self,
+        system: &dyn System,
+        values: &Values,
+        pieces: &[usize],
+    ) -> Option<usize> {
+        let known = self.configurations.iter().position(|of| of == pieces);
+        let new = || {
+            let pays = Configuration::pays(self.order, values.changes);
+            let of = pays.then(|| Configuration::new(system, values, pieces))?;
+            of.filter(Configuration::is_sound)?;
+            self.configurations.push(pieces.to_vec());
+            Some(self.configurations.len() - 1)
+        };
+        known.or_else(new)
+    }
+
+    /// The power of the grading at a cut, which makes the force's exponents there whole.
+    fn steepness(&self, system: &dyn System, contacts: &[Contact], cut: Cut) -> usize {
+        let Cut::Switch(index) = cut else { return 1 };
+        let Switch { contact, level, .. } = self.switches[index];
+        let of = &contacts[contact];
+        let exponents = exponents_at(system.law(of.law), &of.arguments, level);
+        let power = grading::power_for(&exponents.iter().copied());
+        (power as usize).clamp(1, STEEPEST)
+    }
+}
+
+/// How the way between this switch and another one at its level is told.
+fn opening(system: &dyn System, contacts: &[Contact], switch: &Switch) -> Opening {
+    let facts = system.law(contacts[switch.contact].law).facts();
+    if facts.levels[switch.level].force_jumps {
+        Opening::Root
+    } else {
+        Opening::Square
+    }
+}
+
+/// What is added between two cuts.
+struct Way<'w> {
+    cuts: [Cut; 2],
+    length: f64,
+    pieces: &'w [usize],
+    ends: Option<usize>,
+}
+
+/// Exponents of a force at one of its levels, from both sides, and whether each comes with a logarithm.
+fn exponents_at(law: &dyn Law, arguments: &[f64], level: usize) -> Vec<(f64, bool)> {
+    let facts = law.facts();
+    let below = facts.pieces[level]
+        .terms
+        .iter()
+        .map(|term| (term, term.upper));
+    let above = facts.pieces[level + 1]
+        .terms
+        .iter()
+        .map(|term| (term, term.lower));
+    below
+        .chain(above)
+        .filter(|(term, _)| term.of == Quantity::Force)
+        .map(|(term, exponent)| (exponent.value(arguments), term.logarithm))
+        .collect()
+}

@@ -1,0 +1,140 @@
+//! What a skeleton is made from, as data: where a period begins, and its switches.
+//!
+//! Of an orbit that comes back after a part of its period, with coordinates or contacts in each other's place, that part is all there is.
+
+use std::f64::consts::TAU;
+
+use crate::branches::recurrence::Recurrence;
+use crate::contact_equation::linear_part::values::Contact;
+
+/// How a switch is told by its unknown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub(in crate::contact_equation) enum Told {
+    /// By its phase.
+    Alone,
+    /// It is the first of two: its unknown is the middle, and half of `g''` of (3) of [`skeleton`](crate::contact_equation::skeleton) belongs to it, by the phase.
+    First {
+        other: usize,
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+        bend: f64,
+    },
+    /// It is the second of two: its unknown is `H`.
+    Second { other: usize },
+}
+
+/// A gap at a level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::contact_equation) struct Switch {
+    pub(in crate::contact_equation) contact: usize,
+    pub(in crate::contact_equation) level: usize,
+    /// The gap rises there.
+    pub(in crate::contact_equation) rises: bool,
+    pub(in crate::contact_equation) told: Told,
+}
+
+impl Switch {
+    /// Whether it may meet the next one of its gap: at one level, the other way.
+    pub(in crate::contact_equation) fn can_meet(&self, next: &Self) -> bool {
+        (self.contact, self.level) == (next.contact, next.level) && self.rises != next.rises
+    }
+}
+
+/// A switch with the phase where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::contact_equation) struct Placed {
+    pub(in crate::contact_equation) switch: Switch,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub(in crate::contact_equation) phase: f64,
+}
+
+/// Nodes of a stretch and panels of a stretch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::contact_equation) struct Resolution {
+    pub(in crate::contact_equation) nodes: usize,
+    /// Nodes, with finer panels the longer the stretch: so many panels in a whole period.
+    pub(in crate::contact_equation) panels: usize,
+}
+
+/// Where a period or a part of it begins, how the orbit comes back after it, and on which pieces the gaps are at its beginning.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::contact_equation) struct Beginning {
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub(in crate::contact_equation) phase: f64,
+    pub(in crate::contact_equation) recurrence: Recurrence,
+    pub(in crate::contact_equation) pieces: Vec<usize>,
+}
+
+impl Beginning {
+    /// Phase until the orbit comes back.
+    pub(in crate::contact_equation) fn length(&self) -> f64 {
+        length(&self.recurrence)
+    }
+}
+
+/// Phase of the declaration until an orbit comes back.
+pub(in crate::contact_equation) fn length(recurrence: &Recurrence) -> f64 {
+    TAU * recurrence.period as f64 / recurrence.parts as f64
+}
+
+/// What a skeleton is made from: its beginning, and the switches in the order of time.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::contact_equation) struct Placement {
+    pub(in crate::contact_equation) beginning: Beginning,
+    pub(in crate::contact_equation) placed: Vec<Placed>,
+    pub(in crate::contact_equation) resolution: Resolution,
+}
+
+impl Placement {
+    /// Whether it is one of these contacts: it may have been read from a file.
+    pub(in crate::contact_equation) fn fits(&self, contacts: &[Contact]) -> bool {
+        let Beginning { phase, pieces, .. } = &self.beginning;
+        let length = self.beginning.length();
+        let mut levels = contacts.iter().map(|contact| contact.levels.len());
+        let on_pieces = pieces.len() == contacts.len()
+            && pieces.iter().all(|piece| levels.next() >= Some(*piece));
+        let has_level = |placed: &Placed| {
+            let Switch { contact, level, .. } = placed.switch;
+            contacts
+                .get(contact)
+                .is_some_and(|of| level < of.levels.len())
+        };
+        let end = phase + length;
+        let within = |placed: &Placed| (*phase..=end).contains(&placed.phase);
+        let told = |index: usize| self.is_told(index);
+        on_pieces
+            && (0.0..=length).contains(phase)
+            && self.placed.iter().all(has_level)
+            && self.placed.iter().all(within)
+            && self.placed.is_sorted_by(|a, b| a.phase <= b.phase)
+            && (0..self.placed.len()).all(told)
+    }
+
+    /// Whether a switch is alone, or one of two that name each other: of the same gap at the same level, which rises at one of them.
+    fn is_told(&self, index: usize) -> bool {
+        let own = self.placed[index].switch;
+        let other = |place: usize| {
+            let of = self.placed.get(place).map(|placed| placed.switch);
+            of.filter(|of| {
+                (of.contact, of.level) == (own.contact, own.level) && of.rises != own.rises
+            })
+        };
+        match own.told {
+            Told::Alone => true,
+            Told::First { other: place, bend } => {
+                let second = other(place).map(|second| second.told);
+                place > index && bend.is_finite() && second == Some(Told::Second { other: index })
+            }
+            Told::Second { other: place } => {
+                let first = other(place).map(|first| first.told);
+                place < index && matches!(first, Some(Told::First { other, .. }) if other == index)
+            }
+        }
+    }
+}

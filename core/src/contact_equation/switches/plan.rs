@@ -1,0 +1,380 @@
+//! Where an orbit's switches are, before there are equations: from samples of a motion, or from an orbit of other equations.
+//!
+//! Switches that may meet are told in pairs: those with a short way between them, and the extremes of gaps that are short of a level, with `H`
+//! by (3) of [`skeleton`](crate::contact_equation::skeleton). How a motion is sampled is in [`gaps`](crate::contact_equation::orbit::gaps).
+
+use crate::branches::recurrence::Recurrence;
+use crate::contact_equation::equations::Equations;
+use crate::contact_equation::equations::passed::GapExtreme;
+use crate::contact_equation::equations::setting::{Frame, Setting};
+use crate::contact_equation::linear_part::values::Contact;
+use crate::contact_equation::orbit::gaps::{BEND, Gaps, beginning, piece, room, seen};
+use crate::contact_equation::skeleton::Skeleton;
+use crate::contact_equation::skeleton::placement::{
+    Beginning, Placed, Placement, Switch, Told, length,
+};
+use crate::law::{Derivatives, Law, On};
+
+/// Two switches of a gap at one level with a shorter way between them are a pair; pairs part beyond the other length.
+const SHORT: f64 = 0.5;
+pub(super) const SHORTER: f64 = 0.4;
+/// The beginning is not moved where the way around it is as short as this.
+pub(super) const CLOSE: f64 = 0.1;
+pub(super) const LONG: f64 = 1.4;
+/// An extreme is watched from this `-H` on until it is more than the other one. With another extreme of its gap at the phase `d` beside it a gap
+/// falls by `g'' d^2 / 6` between both, an `H` of `d^2 / 3`, so that `-H` is looked at in parts of `d^2` too: none is watched where both meet.
+const NEAR: f64 = 0.4;
+const FAR: f64 = 1.0;
+const NEAR_ANOTHER: f64 = 0.75;
+const FAR_FOR_ANOTHER: f64 = 1.5;
+/// Where the force jumps at the level the orbit beyond it is another one at once, and extremes near each other change with it: there they are
+/// watched from this phase between them on, and until it is the other one.
+const LONELY: f64 = 0.45;
+const TOO_NEAR: f64 = 0.3;
+/// Extremes of different gaps as near as this are in one place.
+const TOGETHER: f64 = 1e-6;
+
+/// Whether an extreme that is short of a level by this `H` is to be watched, with so much room until the next one.
+pub(super) fn is_near(square: f64, room: f64, jumps: bool) -> bool {
+    let clear = if jumps {
+        room > LONELY
+    } else {
+        square >= -NEAR_ANOTHER * room * room
+    };
+    clear && (-NEAR..=0.0).contains(&square)
+}
+
+/// Whether one that is watched is to be watched no more.
+pub(super) fn is_far(square: f64, room: f64, jumps: bool) -> bool {
+    let near = if jumps {
+        square <= 0.0 && room <= TOO_NEAR
+    } else {
+        square < -FAR_FOR_ANOTHER * room * room
+    };
+    near || square < -FAR
+}
+
+/// A switch with the value of its unknown, and the phase that it has in the order of time.
+#[derive(Debug, Clone, Copy)]
+struct Planned {
+    placed: Placed,
+    /// Middle or `H` where it is one of two.
+    value: f64,
+}
+
+/// The plan of an orbit.
+pub(in crate::contact_equation) struct Plan {
+    beginning: Beginning,
+    planned: Vec<Planned>,
+}
+
+impl Plan {
+    /// Of a motion that comes back like this.
+    pub(in crate::contact_equation) fn sampled(gaps: &Gaps<'_>, recurrence: &Recurrence) -> Self {
+        let length = length(recurrence);
+        let (crossings, extremes) = seen(gaps, 0.0, length);
+        if recurrence.parts == 1 {
+            return Self::of(gaps, recurrence, crossings, &extremes);
+        }
+        // Contacts may be in each other's place behind the end: what is seen has to be between beginning and end.
+        let begin = begun(gaps, length, &crossings, &extremes);
+        let (crossings, extremes) = seen(gaps, begin, length);
+        Self::from_beginning(gaps, recurrence, begin, crossings, &extremes)
+    }
+
+    /// From the places where gaps cross levels, and their extremes.
+    pub(in crate::contact_equation) fn of(
+        gaps: &Gaps<'_>,
+        recurrence: &Recurrence,
+        crossings: Vec<Placed>,
+        extremes: &[GapExtreme],
+    ) -> Self {
+        let begin = begun(gaps, length(recurrence), &crossings, extremes);
+        Self::from_beginning(gaps, recurrence, begin, crossings, extremes)
+    }
+
+    fn from_beginning(
+        gaps: &Gaps<'_>,
+        recurrence: &Recurrence,
+        begin: f64,
+        mut crossings: Vec<Placed>,
+        extremes: &[GapExtreme],
+    ) -> Self {
+        let length = length(recurrence);
+        let within = |phase: f64| begin + (phase - begin).rem_euclid(length);
+        for placed in &mut crossings {
+            placed.phase = within(placed.phase);
+        }
+        crossings.sort_by(|a, b| a.phase.total_cmp(&b.phase));
+        let mut short = short_pairs(gaps, length, extremes);
+        short.retain(|[(first, _), _]| is_short(&crossings, &first.switch, within(first.phase)));
+        let mut planned: Vec<Planned> = crossings
+            .into_iter()
+            .map(|placed| Planned {
+                placed,
+                value: placed.phase - begin,
+            })
+            .collect();
+        pair_up(gaps, begin, &mut planned);
+        for (mut placed, square) in nested(short) {
+            placed.phase = within(placed.phase);
+            let value = match placed.switch.told {
+                Told::Second { .. } => square,
+                _ => placed.phase - begin,
+            };
+            planned.push(Planned { placed, value });
+        }
+        planned.sort_by(|a, b| a.placed.phase.total_cmp(&b.placed.phase));
+        join(&mut planned);
+        let pieces = (0..gaps.values.contacts.len()).map(|contact| piece(gaps, contact, begin));
+        Self {
+            beginning: Beginning {
+                phase: begin,
+                recurrence: recurrence.clone(),
+                pieces: pieces.collect(),
+            },
+            planned,
+        }
+    }
+
+    /// The equations on it, and the extended unknowns of the motion.
+    pub(in crate::contact_equation) fn equations(
+        &self,
+        setting: &Setting,
+        value: f64,
+        gaps: &Gaps<'_>,
+        frame: &Frame,
+    ) -> Option<(Equations, Vec<f64>)> {
+        let placed: Vec<Placed> = self.planned.iter().map(|planned| planned.placed).collect();
+        let skeleton = Skeleton::new(
+            setting.system.as_ref(),
+            gaps.values,
+            Placement {
+                beginning: self.beginning.clone(),
+                placed,
+                resolution: frame.resolution,
+            },
+        );
+        let reference = frame.reference.clone();
+        let equations = Equations::new(setting.clone(), value, skeleton, reference, frame.size)?;
+        let u = self.unknowns(&equations, gaps, value);
+        Some((equations, u))
+    }
+
+    fn unknowns(&self, equations: &Equations, gaps: &Gaps<'_>, value: f64) -> Vec<f64> {
+        let skeleton = &equations.skeleton;
+        let mut u = gaps.state(skeleton.begin);
+        for (x, origin) in u.iter_mut().zip(&equations.reference) {
+            *x -= origin;
+        }
+        let told = self.planned.iter().enumerate();
+        u.extend(
+            told.map(|(index, planned)| match planned.placed.switch.told {
+                Told::Second { .. } => skeleton.opened(index).unknown(planned.value),
+                _ => planned.value,
+            }),
+        );
+        u.resize(skeleton.unknowns(), 0.0);
+        u.push(value);
+        write_forces(equations, gaps, &mut u);
+        u
+    }
+}
+
+/// Writes the forces at the nodes that the gaps of a motion have there.
+pub(super) fn write_forces(equations: &Equations, gaps: &Gaps<'_>, u: &mut [f64]) {
+    let skeleton = &equations.skeleton;
+    for interval in &skeleton.intervals {
+        let from = skeleton.place(u, interval.from).phase;
+        let length = skeleton.place(u, interval.to).phase - from;
+        if length <= 0.0 {
+            continue;
+        }
+        for active in &interval.active {
+            let of = &gaps.values.contacts[active.contact];
+            let law = equations.setting.system.law(of.law);
+            for node in 0..interval.nodes.count() {
+                let phase = from + interval.nodes.targets[node] * length;
+                let gap = gaps.gap(active.contact, phase);
+                u[active.first + node] = force(law, of, active.piece, gap);
+            }
+        }
+    }
+}
+
+/// Force on a piece. Beyond its levels, where a guess may lie, it is that at the level.
+fn force(law: &dyn Law, of: &Contact, piece: usize, [gap, rate]: [f64; 2]) -> f64 {
+    let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
+    let out = Derivatives {
+        force: &mut force,
+        by_gap: &mut by_gap,
+        by_rate: &mut by_rate,
+    };
+    let gap = of.held(piece, gap);
+    law.derivatives(On::Piece(piece), &of.arguments, &[gap], &[rate], out);
+    force[0]
+}
+
+/// Makes pairs of successive switches of a gap with a short way between them, the shortest first. Those of other gaps may lie between:
+/// which of them do changes along a branch.
+fn pair_up(gaps: &Gaps<'_>, begin: f64, planned: &mut [Planned]) {
+    loop {
+        let mut best: Option<(f64, [usize; 2])> = None;
+        for first in 0..planned.len() {
+            let switches = planned.iter().map(|planned| planned.placed.switch);
+            let Some(second) = next_of_gap(switches, first) else {
+                continue;
+            };
+            let [a, b] = [first, second].map(|index| planned[index].placed);
+            let alone = a.switch.told == Told::Alone && b.switch.told == Told::Alone;
+            let way = b.phase - a.phase;
+            if alone && a.switch.can_meet(&b.switch) && way < SHORT {
+                let pair = Some((way, [first, second]));
+                best = best.filter(|best| best.0 <= way).or(pair);
+            }
+        }
+        let Some((way, [first, second])) = best else {
+            return;
+        };
+        let middle = planned[first].placed.phase + 0.5 * way;
+        let contact = planned[first].placed.switch.contact;
+        let half = 0.5 * way;
+        let beside = half.max(BEND);
+        let rates = [middle - beside, middle + beside].map(|phase| gaps.gap(contact, phase)[1]);
+        let bend = (rates[1] - rates[0]) / (4.0 * beside * gaps.values.base);
+        planned[first].placed.switch.told = Told::First {
+            other: second,
+            bend,
+        };
+        planned[first].value = middle - begin;
+        planned[second].placed.switch.told = Told::Second { other: first };
+        planned[second].value = half * half;
+    }
+}
+
+/// The next switch of the gap that one of these is of.
+pub(super) fn next_of_gap(switches: impl Iterator<Item = Switch>, first: usize) -> Option<usize> {
+    let mut later = switches.enumerate().skip(first);
+    let (_, own) = later.next()?;
+    let next = later.find(|(_, switch)| switch.contact == own.contact);
+    next.map(|(index, _)| index)
+}
+
+/// Where what is followed begins.
+fn begun(gaps: &Gaps<'_>, length: f64, crossings: &[Placed], extremes: &[GapExtreme]) -> f64 {
+    let short = short_pairs(gaps, length, extremes);
+    let known = crossings
+        .iter()
+        .chain(short.iter().map(|[(first, _), _]| first));
+    beginning(gaps, length, known.map(|placed| placed.phase))
+}
+
+/// The pairs of switches that watch extremes.
+fn short_pairs(gaps: &Gaps<'_>, length: f64, extremes: &[GapExtreme]) -> Vec<[(Placed, f64); 2]> {
+    let mut short = Vec::new();
+    for extreme in extremes {
+        let room = room(extreme, extremes, length);
+        for level in 0..gaps.values.contacts[extreme.contact].levels.len() {
+            short.extend(short_pair(gaps, extreme, level, room));
+        }
+    }
+    short
+}
+
+/// Whether crossings in the order of time agree that the extreme which a pair begins at is short of its level. Where it touches, rounding may say
+/// so of one that the crossings around it are beyond.
+fn is_short(crossings: &[Placed], first: &Switch, phase: f64) -> bool {
+    let place = (first.contact, first.level);
+    let mut before = None;
+    for placed in crossings {
+        if (placed.switch.contact, placed.switch.level) != place {
+            continue;
+        }
+        if placed.phase > phase {
+            return before.map_or(placed.switch.rises == first.rises, |rises: bool| {
+                rises != first.rises
+            });
+        }
+        before = Some(placed.switch.rises);
+    }
+    before.is_none_or(|rises| rises != first.rises)
+}
+
+/// The switches of pairs in the order that they have where they are in one place: those of the gap that is nearest to its level, which
+/// touches it first, around the others.
+fn nested(mut short: Vec<[(Placed, f64); 2]>) -> Vec<(Placed, f64)> {
+    short.sort_by(|[_, a], [_, b]| b.1.total_cmp(&a.1));
+    for index in 1..short.len() {
+        let place = |pair: &[(Placed, f64); 2]| pair[0].0.phase;
+        let own = place(&short[index]);
+        let mut others = short[..index].iter().map(place);
+        if let Some(phase) = others.find(|phase| (phase - own).abs() < TOGETHER) {
+            for (placed, _) in &mut short[index] {
+                placed.phase = phase;
+            }
+        }
+    }
+    let firsts = short.iter().map(|[first, _]| *first);
+    let seconds = short.iter().rev().map(|[_, second]| *second);
+    firsts.chain(seconds).collect()
+}
+
+/// The two switches that watch an extreme which is short of a level by little, both at its phase, with `H`.
+fn short_pair(
+    gaps: &Gaps<'_>,
+    extreme: &GapExtreme,
+    level: usize,
+    room: f64,
+) -> Option<[(Placed, f64); 2]> {
+    let short = extreme.gap - gaps.values.contacts[extreme.contact].levels[level];
+    if (short < 0.0) != extreme.maximum {
+        return None;
+    }
+    let bend = gaps.bend(extreme.contact, extreme.phase);
+    let square = -short / bend;
+    if !is_near(
+        square,
+        room,
+        gaps.values.contacts[extreme.contact].jumps[level],
+    ) {
+        return None;
+    }
+    let switch = |rises: bool, told: Told| Placed {
+        switch: Switch {
+            contact: extreme.contact,
+            level,
+            rises,
+            told,
+        },
+        phase: extreme.phase,
+    };
+    // The place of the other one is written by `join`.
+    let first = switch(extreme.maximum, Told::First { other: 0, bend });
+    let second = switch(!extreme.maximum, Told::Second { other: 0 });
+    Some([(first, square), (second, square)])
+}
+
+/// Tells the two of every pair of each other: of a contact at a level they stand like brackets, a pair within another one.
+fn join(planned: &mut [Planned]) {
+    let mut open: Vec<usize> = Vec::new();
+    for index in 0..planned.len() {
+        let own = planned[index].placed.switch;
+        match own.told {
+            Told::Alone => {}
+            Told::First { .. } => open.push(index),
+            Told::Second { .. } => {
+                let place = |first: &usize| {
+                    let first = planned[*first].placed.switch;
+                    first.can_meet(&own)
+                };
+                let Some(first) = open.iter().rposition(place).map(|at| open.remove(at)) else {
+                    continue;
+                };
+                if let Told::First { other, .. } = &mut planned[first].placed.switch.told {
+                    *other = index;
+                }
+                planned[index].placed.switch.told = Told::Second { other: first };
+            }
+        }
+    }
+}
