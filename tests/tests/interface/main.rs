@@ -13,6 +13,7 @@ mod maps;
 mod messages;
 mod outputs;
 mod owned;
+mod readings;
 mod resumed;
 mod steep;
 mod structure;

@@ -1,6 +1,7 @@
 //! Declarations that must compile, and what their types say of themselves.
 
 mod laws;
+mod memory;
 mod places;
 
 use hertzian::law::On;
