@@ -2,6 +2,9 @@
 
 use nalgebra::Complex;
 
+use super::hill::Hill;
+use super::koopman_hill::KoopmanHill;
+use super::monodromy::Monodromy;
 use super::orbit::Orbit;
 
 /// A way from an orbit to its multipliers.
@@ -32,7 +35,7 @@ pub enum Method {
 }
 
 /// The same, with what methods have in common: so they are written to files too.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 enum Family {
@@ -40,35 +43,6 @@ enum Family {
     Monodromy,
     Hill(Sorting),
     KoopmanHill(Projection),
-}
-
-impl From<Method> for Family {
-    fn from(method: Method) -> Self {
-        match method {
-            Method::Default => Self::Default,
-            Method::Monodromy => Self::Monodromy,
-            Method::Hill => Self::Hill(Sorting::Symmetry),
-            Method::HillImaginaryPart => Self::Hill(Sorting::ImaginaryPart),
-            Method::HillWeightedMean => Self::Hill(Sorting::WeightedMean),
-            Method::KoopmanHill => Self::KoopmanHill(Projection::Direct),
-            Method::KoopmanHillSubharmonic => Self::KoopmanHill(Projection::Subharmonic),
-        }
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<Family> for Method {
-    fn from(family: Family) -> Self {
-        match family {
-            Family::Default => Self::Default,
-            Family::Monodromy => Self::Monodromy,
-            Family::Hill(Sorting::Symmetry) => Self::Hill,
-            Family::Hill(Sorting::ImaginaryPart) => Self::HillImaginaryPart,
-            Family::Hill(Sorting::WeightedMean) => Self::HillWeightedMean,
-            Family::KoopmanHill(Projection::Direct) => Self::KoopmanHill,
-            Family::KoopmanHill(Projection::Subharmonic) => Self::KoopmanHillSubharmonic,
-        }
-    }
 }
 
 /// Which eigenvalues of the Hill matrix are taken for Floquet exponents.
@@ -95,31 +69,75 @@ pub(super) enum Projection {
     Subharmonic,
 }
 
+/// A method with what it is in files, its name, and what computes it.
+struct Row {
+    method: Method,
+    #[cfg_attr(
+        not(feature = "serde"),
+        expect(dead_code, reason = "files are a feature")
+    )]
+    family: Family,
+    name: &'static str,
+    engine: fn() -> Box<dyn Floquet>,
+}
+
+/// The row of a method, which stands here alone.
+#[rustfmt::skip]
+const ROWS: &[Row] = &[
+    row(Method::Default, Family::Default, "default", || Box::new(Monodromy::new(false))),
+    row(Method::Monodromy, Family::Monodromy, "monodromy", || Box::new(Monodromy::new(true))),
+    row(Method::Hill, Family::Hill(Sorting::Symmetry), "hill", || Box::new(Hill::new(Sorting::Symmetry))),
+    row(Method::HillImaginaryPart, Family::Hill(Sorting::ImaginaryPart), "hill-imaginary-part", || Box::new(Hill::new(Sorting::ImaginaryPart))),
+    row(Method::HillWeightedMean, Family::Hill(Sorting::WeightedMean), "hill-weighted-mean", || Box::new(Hill::new(Sorting::WeightedMean))),
+    row(Method::KoopmanHill, Family::KoopmanHill(Projection::Direct), "koopman-hill", || Box::new(KoopmanHill::new(Projection::Direct))),
+    row(Method::KoopmanHillSubharmonic, Family::KoopmanHill(Projection::Subharmonic), "koopman-hill-subharmonic", || Box::new(KoopmanHill::new(Projection::Subharmonic))),
+];
+
+const fn row(
+    method: Method,
+    family: Family,
+    name: &'static str,
+    engine: fn() -> Box<dyn Floquet>,
+) -> Row {
+    Row {
+        method,
+        family,
+        name,
+        engine,
+    }
+}
+
 impl Method {
+    /// The first row if there is none: `method_tests` asks for one of every method.
+    fn row(self) -> &'static Row {
+        let own = ROWS.iter().find(|row| row.method == self);
+        own.unwrap_or(&ROWS[0])
+    }
+
     /// What computes it.
     pub(crate) fn engine(self) -> Box<dyn Floquet> {
-        match Family::from(self) {
-            Family::Default => Box::new(super::monodromy::Monodromy::new(false)),
-            Family::Monodromy => Box::new(super::monodromy::Monodromy::new(true)),
-            Family::Hill(sorting) => Box::new(super::hill::Hill::new(sorting)),
-            Family::KoopmanHill(projection) => {
-                Box::new(super::koopman_hill::KoopmanHill::new(projection))
-            }
-        }
+        (self.row().engine)()
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Method> for Family {
+    fn from(method: Method) -> Self {
+        method.row().family
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Family> for Method {
+    fn from(family: Family) -> Self {
+        let own = ROWS.iter().find(|row| row.family == family);
+        own.unwrap_or(&ROWS[0]).method
     }
 }
 
 impl std::fmt::Display for Method {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Default => "default",
-            Self::Monodromy => "monodromy",
-            Self::HillImaginaryPart => "hill-imaginary-part",
-            Self::HillWeightedMean => "hill-weighted-mean",
-            Self::Hill => "hill",
-            Self::KoopmanHill => "koopman-hill",
-            Self::KoopmanHillSubharmonic => "koopman-hill-subharmonic",
-        })
+        f.write_str(self.row().name)
     }
 }
 

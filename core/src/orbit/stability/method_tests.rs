@@ -119,6 +119,14 @@ fn meissner(a: f64, b: f64, omega: f64) -> [Complex<f64>; 2] {
 }
 
 /// In the exact equation a sine is above and below for half a period each.
+/// What has no row is called by the name of the first.
+#[test]
+fn every_method_has_a_row() {
+    for method in ALL {
+        assert_ne!(method.to_string(), Method::Default.to_string());
+    }
+}
+
 #[test]
 fn meissners_equation() {
     for (a, b, omega) in [(1.0, 1.7, 2.3), (1.0, 2.0, 1.1), (0.3, 1.4, 1.0)] {
