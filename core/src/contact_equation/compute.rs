@@ -3,11 +3,11 @@
 
 use std::time::Instant;
 
-use super::branch::guess::Guess;
 use super::branch::method::{ContactBranch, REFUSALS};
 use super::branch::resume_state::Rest;
 use super::equations::Equations;
 use super::equations::setting::Frame;
+use super::guess::Guess;
 use super::orbit::gaps::Gaps;
 use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
 use super::reading::minimal_period::Compared;
@@ -108,7 +108,8 @@ pub(crate) fn branch(
     let options = options(problem, from, to);
     let mut branch = ContactBranch::new(&mut run, visit);
     let outcome = engine::run(&mut branch, Start::Near(u), options);
-    ended(problem, run, outcome, options.from, started)
+    let rest = branch.rest.take();
+    ended(problem, run, rest, outcome, options.from, started)
 }
 
 /// Goes on with a branch that was interrupted.
@@ -131,7 +132,8 @@ pub(crate) fn resume(
     }
     branch.take_up(rest);
     let outcome = engine::resume(&mut branch, rest.walk.clone(), options);
-    ended(problem, run, outcome, options.from, started)
+    let rest = branch.rest.take();
+    ended(problem, run, rest, outcome, options.from, started)
 }
 
 /// How a branch is followed from a value to another one.
@@ -150,6 +152,7 @@ fn options(problem: &ContactProblem, from: f64, to: f64) -> FollowOptions {
 fn ended(
     problem: &ContactProblem,
     run: Run<'_>,
+    rest: Option<Box<Rest>>,
     outcome: Result<Stop, NewtonError>,
     from: f64,
     started: Instant,
@@ -168,10 +171,7 @@ fn ended(
         }
     };
     let Run {
-        record,
-        statistics,
-        rest,
-        ..
+        record, statistics, ..
     } = run;
     let asked = &problem.asked;
     let (system, varied) = (asked.system.as_ref(), asked.varied.clone());

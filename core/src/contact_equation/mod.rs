@@ -15,7 +15,7 @@
 //! | [`switches`] | which switches an orbit has, whether they fit, equations with others |
 //! | [`branch`] | what the engine of branches asks for: events, extremes of gaps; how a branch is resumed |
 //!
-//! [`problem`] is what was asked for, [`options`] how, and [`compute`] begins: one orbit, or a branch.
+//! [`problem`] is what was asked for, [`options`] how, [`guess`] where a first orbit is looked for, and [`compute`] begins: one orbit, or a branch.
 //!
 //! Switches are unknowns and solved for. That there are no others is told by extremes of gaps, which are looked for between samples of the
 //! motion: see [`extremes`](orbit::extremes) for what that may miss.
@@ -29,6 +29,7 @@ mod branch;
 mod collocation;
 pub(crate) mod compute;
 mod equations;
+mod guess;
 mod linear_part;
 mod options;
 mod orbit;

@@ -129,8 +129,9 @@ impl Branch {
         by_shooting::track(request, shooting, event, second, &mut visit)
     }
 
-    /// An orbit of this branch with its Fourier series, and everything that is read off. By the balance it has that already; by shooting
-    /// its motion is computed once more, and 20 harmonics for each period of the excitation are kept.
+    /// An orbit of this branch with its Fourier series, and everything that is read off. By the balance it has that already; by other methods
+    /// its motion is computed once more, and 20 harmonics for each period of the excitation are kept. Where that motion does not come back as
+    /// nearly as the stated error has it, it is the periodic one beside it; extremes of coordinates, and states, stay those of the orbit.
     ///
     /// # Errors
     /// If the orbit is not one of this system, its motion cannot be computed, or the branch was read from a file and has no

@@ -227,14 +227,14 @@ pub(super) fn reading(
     })
 }
 
-/// Shooting whose flow errs by less than what is stated of an orbit.
+/// Shooting whose flow has a tolerance, in parts of the largest state, below the stated error of an orbit.
 fn as_known(shooting: Shooting, request: &Request, point: &Point) -> Shooting {
     let tolerance = shooting.flow_tolerance(request.tolerance);
     let known = point
         .error
-        .map_or(tolerance, |error| FINER * error)
-        .max(FINEST);
-    shooting.tolerance(known.min(tolerance))
+        .filter(|error| error.is_finite() && *error > 0.0);
+    let finer = known.map_or(tolerance, |error| (FINER * error).max(FINEST));
+    shooting.tolerance(finer.min(tolerance))
 }
 
 /// The same request for orbits of another period, with as many segments as it has periods.

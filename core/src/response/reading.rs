@@ -177,7 +177,8 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     /// If nothing has that name, the orbit is not one of this request, or its motion cannot be computed.
     pub fn reading(&self, name: &str, point: &Point) -> Result<Reading, Error> {
         let model = Model::of(self.request.system.as_ref());
-        self.read_signal(model.source(name)?, point)
+        let found = self.read_signal(model.source(name)?, point);
+        self.request.unless_cancelled(point.value, found)
     }
 
     /// What is asked of a signal at an orbit of this request, by name: as [`Branch::measured`], of an orbit that is on no branch.

@@ -125,12 +125,17 @@ impl Following {
     /// If that is none of this system.
     pub(super) fn of(system: &dyn System, written: Written) -> Result<Self, Error> {
         let request = Request::with(system, written.asked)?;
-        let accuracy = match &written.by {
-            Method::HarmonicBalance { options, .. } => options.accuracy,
-            Method::Shooting { options, .. } => options.accuracy,
-            Method::ContactEquation { options, .. } => options.accuracy,
+        let (accuracy, otherwise) = match &written.by {
+            Method::HarmonicBalance { options, .. } => (options.accuracy, None),
+            Method::Shooting {
+                options, otherwise, ..
+            } => (options.accuracy, *otherwise),
+            Method::ContactEquation {
+                options, otherwise, ..
+            } => (options.accuracy, *otherwise),
         };
-        if !accuracy.is_of(&Model::of(system)) {
+        let same = otherwise.is_none_or(|otherwise| otherwise.balance.accuracy == accuracy);
+        if !same || !accuracy.is_of(&Model::of(system)) {
             return Err(RequestError::Rest.into());
         }
         match written.by {

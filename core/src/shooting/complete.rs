@@ -18,10 +18,10 @@ use crate::error::Error;
 use crate::numeric::fourier::sampled::SampledTransform;
 use crate::numeric::fourier::series;
 use crate::orbit::observe::Observer;
-use crate::time::MotionError;
 use crate::time::history;
 use crate::time::signals::Asked;
 use crate::time::stroboscope::Stroboscope;
+use crate::time::{FlowError, MotionError};
 
 /// Samples for each period of the declaration, and harmonics that are kept, for each unit of the divisor.
 const SAMPLES: usize = 1024;
@@ -77,7 +77,7 @@ pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point
     observed.switches = point.observed.switches;
     // Outputs and contacts from the motion itself: forces take more harmonics than positions.
     observed.outputs = outputs;
-    let (contacts, _) = read(problem, point, Asked::Contacts, 0)?;
+    let contacts = read_along(problem, point, Asked::Contacts)?;
     let period = TAU / point.orbit.base;
     (observed.contacts, observed.on_pieces) = contacts.contacts(period);
     Ok(Point {
@@ -104,7 +104,7 @@ pub(crate) fn reading(
     Ok(reader.found())
 }
 
-/// What is asked for, along the motion from the states of an orbit, and the orbit with states from which the motion is [closed](super::closed).
+/// What is asked for, along the motion from the states of an orbit, and the orbit with states from which that is [closed](super::closed).
 fn read<'p>(
     problem: &'p ShootingProblem,
     point: &Point,
@@ -112,26 +112,47 @@ fn read<'p>(
     harmonics: usize,
 ) -> Result<(Reader<'p>, Point), Error> {
     let (mut equations, u) = start::of_point(problem, point)?;
-    let recurrence = equations.span.recurrence.clone();
     let value = point.value;
+    let failed = |reason| MotionError { value, reason };
     let along = |equations: &mut Equations, u: &[f64]| {
-        let mut reader = problem.reader(value, asked, &recurrence, harmonics);
-        let traced = equations.trace_closing(u, &mut |stretch| reader.include(stretch));
-        let apart = traced.map_err(|reason| MotionError { value, reason })?;
-        Ok::<_, Error>((reader, apart))
+        let recurrence = &equations.span.recurrence;
+        let mut reader = problem.reader(value, asked, recurrence, harmonics);
+        let apart = equations.trace_closing(u, &mut |stretch| reader.include(stretch));
+        apart.map(|apart| (reader, apart))
     };
-    let (reader, apart) = along(&mut equations, &u)?;
+    let (reader, apart) = along(&mut equations, &u).map_err(failed)?;
     let mut closed = point.clone();
-    if closed::is_closed(point, apart) {
+    if closed::is_closed(problem, point, apart) {
         return Ok((reader, closed));
     }
-    let Some(states) = closed::states(problem, &mut equations, &u, point, apart) else {
+    let states = closed::states(problem, &mut equations, &u, point);
+    if problem.cancel.is_cancelled() {
+        return Err(failed(FlowError::Cancelled { phase: 0.0 }).into());
+    }
+    let Some(states) = states else {
         return Ok((reader, closed));
     };
     let u = equations.unknowns_of(&states, value);
-    let (reader, _) = along(&mut equations, &u)?;
+    // What was read stands where the other motion cannot be.
+    let Ok((reader, _)) = along(&mut equations, &u) else {
+        return Ok((reader, closed));
+    };
     closed.orbit.states = states;
     Ok((reader, closed))
+}
+
+/// What is asked for, along the motion from the states of an orbit as they are.
+fn read_along<'p>(
+    problem: &'p ShootingProblem,
+    point: &Point,
+    asked: Asked,
+) -> Result<Reader<'p>, Error> {
+    let (mut equations, u) = start::of_point(problem, point)?;
+    let value = point.value;
+    let mut reader = problem.reader(value, asked, &equations.span.recurrence, 0);
+    let traced = equations.trace(&u, &mut |stretch| reader.include(stretch));
+    traced.map_err(|reason| MotionError { value, reason })?;
+    Ok(reader)
 }
 
 /// Positions at equal distances over the period, so many in each period of the declaration, coordinate by coordinate.

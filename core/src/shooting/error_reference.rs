@@ -31,7 +31,7 @@ pub(super) const ROUNDING: f64 = 50.0 * f64::EPSILON;
 /// Disturbance of a closed form, in the same units.
 const DISTURBANCE: f64 = 1e-9;
 /// An update of this size leaves the square of it.
-const ONE_UPDATE: f64 = 1e-3;
+pub(super) const ONE_UPDATE: f64 = 1e-3;
 
 /// Equations of the same orbits that are finer, or, of a closed form, disturbed.
 pub(super) struct ErrorReference {

@@ -8,7 +8,7 @@
 //! | branch point | `b = det(M - I) / l'`, the determinant of the bordered matrix of Newton's method but for a factor |
 //! | period doubling | `det(M + I)`; where coordinates have to be in each other's place twice to be in their own, that symmetry breaks there |
 //! | Neimark-Sacker | the [moduli](crate::branches::moduli) of multipliers, where a complex pair passes one |
-//! | grazing | an extreme of a gap less its level ([`touch`](crate::branches::engine)) |
+//! | grazing | an extreme of a gap less its level ([`grazing`](crate::branches::engine)) |
 //!
 //! At a fold `b` stays away from zero. Where both `l'` and `b` change their sign, a branch ends on another one, as of twice the
 //! period at a period doubling; or there is a fold, and a crossing beside it.

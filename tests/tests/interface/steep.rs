@@ -98,7 +98,7 @@ fn a_branch_that_is_kept_goes_on_by_shooting() {
     assert_eq!(resumed.method(), Some(OrbitMethodKind::Shooting));
     assert!(resumed.points == whole.points && resumed.events == whole.events);
     let stopped = std::fs::read(&path).expect("a file");
-    for text in [Some(stopped), killed].into_iter().flatten() {
+    for text in [stopped, killed.expect("a file")] {
         std::fs::write(&path, text).expect("written");
         let mut read = Branch::read(&path).expect("read");
         read.attach(&steep).expect("its model");

@@ -5,7 +5,7 @@
 //! | symmetry breaking, period doubling | the determinant of the block of harmonics that the orbits do not have ([`critical_block`](crate::balance::critical_block)) |
 //! | branch point ([`crossing_branch`](super::crossing_branch)) | the determinant of the Jacobian with the tangent as its border |
 //! | Neimark-Sacker | the moduli of multipliers ([`moduli`](crate::branches::moduli)), where a complex pair passes one |
-//! | grazing ([`touch`](crate::branches::engine)) | an extreme of a gap less the level ([`gap_extremes`](super::gap_extremes)) |
+//! | grazing ([`grazing`](crate::branches::engine)) | an extreme of a gap less the level ([`gap_extremes`](super::gap_extremes)) |
 //!
 //! All are functions of the discrete orbit, and driven to zero on the branch. The same functions of the orbit that is corrected for
 //! the harmonics left out say where the event would be then: with `s` along the unit tangent `t`, and `du` the correction,

@@ -34,7 +34,7 @@
 //! tangent).
 
 use super::corner_search::{Corner, CornerSearch};
-use super::explained::Bent;
+use super::grazing::Bent;
 use super::grazing::touching;
 use super::grazing_search::{Approach, Reached};
 use super::seen::Seen;

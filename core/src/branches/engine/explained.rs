@@ -1,6 +1,7 @@
-//! What is said where multipliers cross the unit circle and no event was located. Touches are kept by [`grazing`](super::grazing).
+//! What is said where multipliers cross the unit circle and no event was located.
 
 use super::Engine;
+use super::grazing::Bent;
 use crate::branches::extreme::Bend;
 use crate::branches::moduli;
 use crate::branches::point::Point;
@@ -8,26 +9,6 @@ use crate::branches::problem::BranchProblem;
 use crate::branches::record::Kept;
 use crate::branches::stability::Verdict;
 use crate::event::{EventKind, Turn};
-
-/// A touch at which the branch or its multipliers bend.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Bent {
-    /// Number of points of the branch before it.
-    pub(super) after: usize,
-    /// Of the event.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub(super) value: f64,
-    /// The sharpest of all levels that are touched there.
-    pub(super) bend: Bend,
-}
-
-impl Bent {
-    /// Whether it is what a file may say.
-    pub(super) fn is_possible(&self) -> bool {
-        self.value.is_finite()
-    }
-}
 
 impl Engine {
     /// Multipliers that cross the unit circle in the last step, at no place that was found, do so where a level is touched in it at which they

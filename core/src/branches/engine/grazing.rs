@@ -6,7 +6,6 @@
 //! ([`Bent::kept`]): the method reads the orbit there ([`BranchProblem::keep_touch`]).
 
 use super::Engine;
-use super::explained::Bent;
 use super::grazing_search::{Approach, Reached, on_the_way};
 use super::grazing_within_step::Steps;
 use super::inside::distance;
@@ -225,7 +224,25 @@ impl Engine {
     }
 }
 
+/// A touch at which the branch or its multipliers bend.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Bent {
+    /// Number of points of the branch before it.
+    pub(super) after: usize,
+    /// Of the event.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub(super) value: f64,
+    /// The sharpest of all levels that are touched there.
+    pub(super) bend: Bend,
+}
+
 impl Bent {
+    /// Whether it is what a file may say.
+    pub(super) fn is_possible(&self) -> bool {
+        self.value.is_finite()
+    }
+
     /// Has a touch kept, of an orbit with these extremes. Says what bends there, if anything does and it is an event.
     pub(super) fn kept(
         problem: &mut dyn BranchProblem,

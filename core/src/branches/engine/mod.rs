@@ -42,7 +42,7 @@ mod tests;
 mod walk;
 mod zero;
 
-use explained::Bent;
+use grazing::Bent;
 use grazing::Gaps;
 use inside::distance;
 use joint::Joint;

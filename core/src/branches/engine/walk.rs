@@ -4,7 +4,7 @@
 //! step makes that step again, and comes to the same points to the last bit.
 
 use super::Engine;
-use super::explained::Bent;
+use super::grazing::Bent;
 use super::joint::Joint;
 use super::seen::{Former, Seen};
 use crate::branches::problem::Test;

@@ -25,7 +25,7 @@ use crate::branches::stability::Stability;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::linear_part::block::add;
 use crate::contact_equation::run::Run;
-use crate::contact_equation::run::screened::Screened;
+use crate::contact_equation::run::error_estimate::Screened;
 use crate::contact_equation::switches::fits::Fits;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};

@@ -13,11 +13,12 @@ use std::f64::consts::TAU;
 
 use crate::branches::extreme::{Bend, Extreme};
 use crate::branches::recurrence::Recurrence;
-use crate::contact_equation::equations::passed::{GapExtreme, Image};
+use crate::contact_equation::equations::pass_results::{GapExtreme, Image};
 use crate::contact_equation::orbit::motion::Motion;
+use crate::contact_equation::run::Run;
 use crate::contact_equation::run::images::later;
-use crate::contact_equation::run::{Run, SAME};
 use crate::contact_equation::skeleton::placement::Told;
+use crate::contact_equation::switches::fits::SAME;
 
 /// What `H` of a pair may be where its gap touches the level.
 const TOUCHES: f64 = 1e-9;

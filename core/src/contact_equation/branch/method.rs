@@ -59,6 +59,8 @@ pub(in crate::contact_equation) struct ContactBranch<'b, 'r> {
     pub(in crate::contact_equation) last: Option<Last>,
     /// The equations that the walk goes on with, and its last point in them.
     next: Option<Next>,
+    /// Where it was before the last step.
+    pub(in crate::contact_equation) rest: Option<Box<Rest>>,
     /// The equations before, while others are tried.
     before: Option<(Equations, usize)>,
     /// Other equations lead nowhere from the last point.
@@ -141,6 +143,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             tested: None,
             last: None,
             next: None,
+            rest: None,
             before: None,
             stuck: false,
             refused: 0,
@@ -546,7 +549,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
             self.run.record.kept(),
             &rest,
         );
-        self.run.rest = Some(Box::new(rest));
+        self.rest = Some(Box::new(rest));
         answer
     }
 

@@ -7,7 +7,7 @@ use crate::contact_equation::equations::Equations;
 use crate::contact_equation::equations::setting::Frame;
 use crate::contact_equation::problem::{ContactProblem, RESOLUTIONS};
 use crate::contact_equation::run::Run;
-use crate::contact_equation::run::screened::Screened;
+use crate::contact_equation::run::error_estimate::Screened;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::placement::Placement;
 

@@ -1,6 +1,6 @@
 //! The equations of an orbit on a [skeleton](super::skeleton), by one [`pass`] from its beginning to its end: [`integrals`] of the forces of an
 //! interval, the states at all its [`targets`], and what is left when switches are [`eliminated`] too. [`setting`] is what all orbits of a branch
-//! have in common, [`passed`] what a pass leaves for those who look at the motion.
+//! have in common, [`pass_results`] what a pass leaves for those who look at the motion.
 //!
 //! Over an interval of length `s` that begins at `tau_a` with the states `y_a`, at a part `psi` of it,
 //!
@@ -35,7 +35,7 @@
 mod eliminated;
 pub(super) mod integrals;
 pub(super) mod pass;
-pub(super) mod passed;
+pub(super) mod pass_results;
 pub(super) mod setting;
 mod targets;
 mod workspace;
@@ -44,7 +44,7 @@ use std::cell::OnceCell;
 use std::f64::consts::TAU;
 
 use self::eliminated::Eliminated;
-use self::passed::{Extremes, Image, Passed};
+use self::pass_results::{Extremes, Image, Passed};
 use self::setting::Setting;
 use self::workspace::Room;
 use super::linear_part::block::{Block, add};
@@ -57,6 +57,8 @@ use crate::continuation::chain::Chain;
 use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::problem::Problem;
 
+/// What rounding leaves of the phase between two switches in one place.
+pub(super) const BACK: f64 = 1e-9;
 /// Part of the parameter's unit for differences of fourth order.
 const DIFFERENCE: f64 = 1e-3;
 /// An angle of which that part changes nothing that the difference does not see.
@@ -338,6 +340,12 @@ impl Equations {
             Some(time * rates.fold(0.0, f64::max))
         });
         angles.fold(0.0, f64::max)
+    }
+
+    /// Whether the switches of the last pass are in the order that they are told in: those of different contacts may pass each other.
+    pub(super) fn is_in_order(&self) -> bool {
+        let ways = self.passed.iter().map(|passed| passed.phases);
+        ways.into_iter().all(|[from, to]| to >= from - BACK)
     }
 
     /// Everything at unknowns: residuals, and derivatives if asked for.

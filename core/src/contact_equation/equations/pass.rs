@@ -4,7 +4,7 @@
 //! Numbers of equations are those of [`equations`](crate::contact_equation::equations).
 
 use super::integrals::Loaded;
-use super::passed::Passed;
+use super::pass_results::Passed;
 use super::targets::Way;
 use super::workspace::Room;
 use crate::contact_equation::linear_part::block::{add, row_times};

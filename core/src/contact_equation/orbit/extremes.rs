@@ -19,7 +19,7 @@
 //! Source: de Boor (2001), A Practical Guide to Splines, chapter IV (cubic Hermite interpolation).
 
 use super::motion::Motion;
-use crate::contact_equation::equations::passed::{Extremes, GapExtreme};
+use crate::contact_equation::equations::pass_results::{Extremes, GapExtreme};
 use crate::contact_equation::skeleton::placement::Told;
 use crate::numeric::roots::{self, Place};
 

@@ -13,7 +13,7 @@
 //!
 //! Source: Abramowitz and Stegun (1964), Handbook of Mathematical Functions, section 25.3 (numerical differentiation).
 
-use crate::contact_equation::equations::passed::GapExtreme;
+use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::linear_part::values::{Instant, Values};
 use crate::contact_equation::skeleton::placement::{Placed, Switch, Told};
 use crate::numeric::roots::{self, Place};

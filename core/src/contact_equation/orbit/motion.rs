@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use crate::contact_equation::collocation::nodes::{Nodes, points_for};
 use crate::contact_equation::collocation::partway::Partway;
 use crate::contact_equation::equations::Equations;
-use crate::contact_equation::equations::passed::{Extremes, Passed};
+use crate::contact_equation::equations::pass_results::{Extremes, Passed};
 use crate::contact_equation::linear_part::block::{Block, times};
 use crate::contact_equation::linear_part::configuration::Configuration;
 use crate::contact_equation::linear_part::values::{Contact, Instant, Values, pair};

@@ -26,7 +26,7 @@ use self::errors::{Steepness, everywhere};
 use super::equations::Equations;
 use super::orbit::motion::{Motion, Within};
 use super::run::Run;
-use super::run::screened::{SAFETY, SCREENED, Screened};
+use super::run::error_estimate::{SAFETY, SCREENED, Screened};
 use super::skeleton::interval::Interval;
 use super::skeleton::phases::Opening;
 use super::skeleton::placement::Told;

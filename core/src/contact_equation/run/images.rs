@@ -2,7 +2,7 @@
 //! [`recurrence`](crate::branches::recurrence) tells orbits by their states at one.
 
 use super::Run;
-use crate::contact_equation::equations::passed::{GapExtreme, Image};
+use crate::contact_equation::equations::pass_results::{GapExtreme, Image};
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::skeleton::placement::Switch;
 

@@ -1,12 +1,11 @@
-//! What a branch has gathered, and the equations that it is followed by: what finer ones have shown of errors ([`screened`]), and which contacts
+//! What a branch has gathered, and the equations that it is followed by: what finer ones have shown of errors ([`error_estimate`]), and which contacts
 //! are in each other's place when an orbit has come back ([`images`]). What is read off an orbit is in [`reading`](super::reading), how other
 //! equations come about in [`switches`](super::switches).
 
+pub(super) mod error_estimate;
 pub(super) mod images;
-pub(super) mod screened;
 
-use self::screened::Screened;
-use super::branch::resume_state::Rest;
+use self::error_estimate::Screened;
 use super::equations::Equations;
 use super::equations::setting::Frame;
 use super::orbit::gaps::{At, Gaps};
@@ -18,9 +17,6 @@ use crate::continuation::statistics::Statistics;
 
 /// Tangents in other unknowns are differences over so much of the largest entry.
 pub(super) const DIFFERENCE: f64 = 1e-5;
-
-/// An extreme belongs to a pair of switches whose middle is as near, in parts of the phase to the next extreme if that is less than one.
-pub(super) const SAME: f64 = 0.3;
 
 /// What a branch has gathered, and the equations that it is followed by.
 pub(super) struct Run<'r> {
@@ -37,8 +33,6 @@ pub(super) struct Run<'r> {
     pub(super) statistics: Statistics,
     /// What the branch has met.
     pub(super) joined: Option<Recurrence>,
-    /// Where it was before the last step.
-    pub(super) rest: Option<Box<Rest>>,
 }
 
 impl<'r> Run<'r> {
@@ -58,7 +52,6 @@ impl<'r> Run<'r> {
             record: Record::default(),
             statistics: Statistics::default(),
             joined: None,
-            rest: None,
         }
     }
 

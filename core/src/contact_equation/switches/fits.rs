@@ -4,19 +4,18 @@
 //! [extremes](crate::contact_equation::orbit::extremes), as far as these are seen.
 
 use super::plan;
-use crate::contact_equation::equations::Equations;
-use crate::contact_equation::equations::passed::GapExtreme;
+use crate::contact_equation::equations::pass_results::GapExtreme;
+use crate::contact_equation::equations::{BACK, Equations};
 use crate::contact_equation::linear_part::configuration::Configuration;
 use crate::contact_equation::orbit::gaps::room;
 use crate::contact_equation::orbit::motion::Motion;
-use crate::contact_equation::run::{Run, SAME};
+use crate::contact_equation::run::Run;
 use crate::contact_equation::skeleton::placement::{Switch, Told};
 
+/// An extreme belongs to a pair of switches whose middle is as near, in parts of the phase to the next extreme if that is less than one.
+pub(in crate::contact_equation) const SAME: f64 = 0.3;
 /// A gap that is beyond its level by this part of its size is elsewhere.
 const BEYOND: f64 = 1e-9;
-/// What rounding leaves of the phase between two switches in one place.
-const BACK: f64 = 1e-9;
-
 /// Switches are told in other pairs where the way between two of them is this part of those that they are told by.
 const NEARER: f64 = 0.5;
 
@@ -32,12 +31,6 @@ pub(in crate::contact_equation) enum Fits {
 }
 
 impl Equations {
-    /// Whether the switches of the last pass are in the order that they are told in: those of different contacts may pass each other.
-    pub(in crate::contact_equation) fn is_in_order(&self) -> bool {
-        let ways = self.passed.iter().map(|passed| passed.phases);
-        ways.into_iter().all(|[from, to]| to >= from - BACK)
-    }
-
     /// Whether the configurations of the last pass have eigenvectors that are far enough from dependent ones.
     fn is_sound(&self) -> bool {
         self.configurations.iter().all(Configuration::is_sound)

@@ -5,7 +5,7 @@
 
 use crate::branches::recurrence::Recurrence;
 use crate::contact_equation::equations::Equations;
-use crate::contact_equation::equations::passed::GapExtreme;
+use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::equations::setting::{Frame, Setting};
 use crate::contact_equation::linear_part::values::Contact;
 use crate::contact_equation::orbit::gaps::{BEND, Gaps, beginning, piece, room, seen};

@@ -5,7 +5,7 @@
 
 use super::plan::{Plan, write_forces};
 use crate::contact_equation::equations::Equations;
-use crate::contact_equation::equations::passed::GapExtreme;
+use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::orbit::gaps::{Gaps, apart, seen};
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::skeleton::Skeleton;

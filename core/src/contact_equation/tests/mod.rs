@@ -4,9 +4,9 @@ mod affine;
 mod both_sides;
 mod grazings;
 mod jumps;
+mod minimal_period;
 mod moving_stiffness;
 mod order;
-mod regular;
 mod several;
 
 use nalgebra::DMatrix;

@@ -106,7 +106,7 @@ impl Follow for Either {
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
         if may_break(request, &self.balance) {
-            return self.balance.run(request, visit);
+            return self.first_found(request, true, |method| method.run(request, &mut *visit));
         }
         let found = self.first.run(request, self.otherwise(None), &mut *visit);
         self.or_balance(request, found, visit)

@@ -83,6 +83,20 @@ fn the_balance_comes_farther_and_finds_all() {
     }
 }
 
+/// As a file has it.
+#[cfg(feature = "serde")]
+fn from_file(branch: &Branch) -> Branch {
+    let text = serde_json::to_string(branch).expect("a text");
+    let mut read: Branch = serde_json::from_str(&text).expect("a branch");
+    read.attach(&OneSided {}).expect("its model");
+    read
+}
+
+#[cfg(not(feature = "serde"))]
+fn from_file(branch: &Branch) -> Branch {
+    branch.clone()
+}
+
 /// Interrupted before it comes as far it is tried anew, and after that it goes on.
 #[test]
 fn what_is_interrupted_goes_on_to_the_same() {
@@ -107,9 +121,11 @@ fn what_is_interrupted_goes_on_to_the_same() {
                 (part.method(), part.stopped),
                 (Some(method), Stop::Interrupted)
             );
-            let resumed = part.resume().run().expect("a branch");
-            assert_eq!(resumed.stopped, whole.stopped);
-            assert!(resumed.points == whole.points && resumed.events == whole.events);
+            for part in [from_file(&part), part] {
+                let resumed = part.resume().run().expect("a branch");
+                assert_eq!(resumed.stopped, whole.stopped);
+                assert!(resumed.points == whole.points && resumed.events == whole.events);
+            }
         }
     }
 }

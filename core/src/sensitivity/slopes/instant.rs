@@ -1,4 +1,4 @@
-//! A motion at one instant: gaps by (1) of [`slopes`](super), forces, and accelerations by (3).
+//! A motion at one instant: gaps by (1), forces by (2) and accelerations by (3) of [`slopes`](super).
 
 use nalgebra::DMatrix;
 

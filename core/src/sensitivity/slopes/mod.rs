@@ -11,9 +11,9 @@
 //! and the derivative of every sum is by the rule of products. Each contact is on a stated piece of its law, so that one-sided limits at
 //! switches have derivatives too.
 //!
-//! [`instant`] has the motion itself, [`along`] its derivatives along a direction, [`signals`] what is read off both.
+//! [`instant`] has the motion itself, [`directional_derivatives`] its derivatives along a direction, [`signals`] what is read off both.
 
-mod along;
+mod directional_derivatives;
 mod instant;
 pub(super) mod signals;
 

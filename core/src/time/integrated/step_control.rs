@@ -1,4 +1,4 @@
-//! A motion, step by step.
+//! The width of the steps of a motion: tried, judged by their error, and cut where a gap comes to a level.
 
 use crate::time::{FlowError, Tangent};
 

@@ -67,9 +67,9 @@ fn a_damper_in_series_has_its_complex_stiffness() {
     }
 }
 
-/// The state after a period, peak-to-peak of `x`, and the largest force, of the equations as they are: three states, by the method of Kutta
+/// The state after a period, peak-to-peak of `x`, the largest force, and the part of the time in contact, of the equations as they are: three states, by the method of Kutta
 /// (1901).
-fn integrated(k: f64, c: f64, omega: f64, start: [f64; 3]) -> ([f64; 3], f64, f64) {
+fn integrated(k: f64, c: f64, omega: f64, start: [f64; 3]) -> ([f64; 3], [f64; 3]) {
     let push = |[x, _, z]: [f64; 3]| (x - z).max(0.0).powf(1.5);
     let slope = |t: f64, s: [f64; 3]| {
         let load = 1.0 + 0.8 * (omega * t).cos();
@@ -78,7 +78,7 @@ fn integrated(k: f64, c: f64, omega: f64, start: [f64; 3]) -> ([f64; 3], f64, f6
     let along = |s: [f64; 3], by: f64, d: [f64; 3]| std::array::from_fn(|i| s[i] + by * d[i]);
     let steps = 20_000;
     let h = TAU / omega / f64::from(steps);
-    let mut s = start;
+    let (mut s, mut touching) = (start, 0.0);
     let [mut least, mut most, mut largest] = [s[0], s[0], push(s)];
     for step in 0..steps {
         let t = h * f64::from(step);
@@ -89,8 +89,9 @@ fn integrated(k: f64, c: f64, omega: f64, start: [f64; 3]) -> ([f64; 3], f64, f6
         let sum = |i: usize| first[i] + 2.0 * (second[i] + third[i]) + fourth[i];
         s = std::array::from_fn(|i| s[i] + h / 6.0 * sum(i));
         (least, most, largest) = (s[0].min(least), s[0].max(most), push(s).max(largest));
+        touching += f64::from(u8::from(push(s) > 0.0));
     }
-    (s, most - least, largest)
+    (s, [most - least, largest, touching / f64::from(steps)])
 }
 
 /// Orbits come back where they began, in the three states of the equations as they are, by each method.
@@ -102,7 +103,7 @@ fn a_contact_on_a_layer_that_creeps_is_that_of_its_three_states() {
         for (method, point) in orbits(&system, omega) {
             let state = point.orbit.state();
             let start = [state[0], state[2], state[1]];
-            let (end, size, largest) = integrated(k, c, omega, start);
+            let (end, [size, largest, touching]) = integrated(k, c, omega, start);
             let away = end.iter().zip(start).map(|(a, b)| (a - b).abs());
             let away = away.fold(0.0, f64::max) / size;
             assert!(away < 1e-7, "{method} {omega}: {away:e}");
