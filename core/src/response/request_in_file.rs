@@ -54,6 +54,23 @@ enum Method {
     },
 }
 
+impl Method {
+    /// Whether a model has what its accuracy is of, and that of the balance that is tried otherwise.
+    fn is_of(&self, model: &Model) -> bool {
+        let (accuracy, otherwise) = match self {
+            Self::HarmonicBalance { options, .. } => (options.accuracy, None),
+            Self::Shooting {
+                options, otherwise, ..
+            } => (options.accuracy, *otherwise),
+            Self::ContactEquation {
+                options, otherwise, ..
+            } => (options.accuracy, *otherwise),
+        };
+        let same = otherwise.is_none_or(|otherwise| otherwise.balance.accuracy == accuracy);
+        same && accuracy.is_of(model)
+    }
+}
+
 impl<R: Clone> Left<R> {
     /// What is left of a branch that was followed one way, or both ways.
     fn apart(&self) -> (Option<Box<R>>, Option<Box<BothWays<R>>>) {
@@ -125,17 +142,7 @@ impl Following {
     /// If that is none of this system.
     pub(super) fn of(system: &dyn System, written: Written) -> Result<Self, Error> {
         let request = Request::with(system, written.asked)?;
-        let (accuracy, otherwise) = match &written.by {
-            Method::HarmonicBalance { options, .. } => (options.accuracy, None),
-            Method::Shooting {
-                options, otherwise, ..
-            } => (options.accuracy, *otherwise),
-            Method::ContactEquation {
-                options, otherwise, ..
-            } => (options.accuracy, *otherwise),
-        };
-        let same = otherwise.is_none_or(|otherwise| otherwise.balance.accuracy == accuracy);
-        if !same || !accuracy.is_of(&Model::of(system)) {
+        if !written.by.is_of(&Model::of(system)) {
             return Err(RequestError::Rest.into());
         }
         match written.by {

@@ -3,6 +3,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::events;
+use super::resume_state::Rest;
 use crate::branches::branch_start::step_on_other_branch;
 use crate::branches::checkpoint::keep;
 use crate::branches::engine::{Search, Walk};
