@@ -31,6 +31,9 @@ const CLOSED_EACH: f64 = 1e-3;
 /// States that are farther off than so many times the error are of another orbit.
 const FAR: f64 = 100.0;
 
+/// And than this part of the size, where the error is that of an output: states may err by more than it.
+const AT_MOST: f64 = 1e-3;
+
 /// Whether a motion whose segments end so far from where the next ones begin is closed, by (1).
 pub(super) fn is_closed(problem: &ShootingProblem, point: &Point, apart: f64) -> bool {
     let Some(error) = known(point) else {
@@ -47,6 +50,7 @@ pub(super) fn states(
     equations: &mut Equations,
     u: &[f64],
     point: &Point,
+    apart: f64,
 ) -> Option<Vec<f64>> {
     let mut closed = u.to_vec();
     let mut newton = Newton::new(equations);
@@ -56,7 +60,11 @@ pub(super) fn states(
         ..options
     };
     solve::at_value(equations, &mut newton, &mut closed, options).ok()?;
-    let far = FAR * known(point)? * 2.0 * point.size();
+    let size = 2.0 * point.size();
+    let far = match problem.accuracy {
+        Accuracy::Output(_) => (FAR * (known(point)? * size + apart)).min(AT_MOST * size),
+        Accuracy::Coordinate(_) | Accuracy::Coordinates => FAR * known(point)? * size,
+    };
     (equations.apart(&closed, u) <= far).then(|| equations.states_of(&closed))
 }
 

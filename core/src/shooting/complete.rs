@@ -125,7 +125,7 @@ fn read<'p>(
     if closed::is_closed(problem, point, apart) {
         return Ok((reader, closed));
     }
-    let states = closed::states(problem, &mut equations, &u, point);
+    let states = closed::states(problem, &mut equations, &u, point, apart);
     if problem.cancel.is_cancelled() {
         return Err(failed(FlowError::Cancelled { phase: 0.0 }).into());
     }
