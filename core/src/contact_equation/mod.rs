@@ -11,7 +11,7 @@
 //! | [`equations`] | residuals and derivatives, by one pass over the orbit |
 //! | [`orbit`] | the motion at any phase, extremes of coordinates and gaps |
 //! | [`run`] | what a branch has gathered and goes on with |
-//! | [`reading`] | points with multipliers and errors, orbits more regular than asked for |
+//! | [`reading`] | points with multipliers and errors, whether an orbit comes back earlier than asked for |
 //! | [`switches`] | which switches an orbit has, whether they fit, equations with others |
 //! | [`branch`] | what the engine of branches asks for: events, extremes of gaps; how a branch is resumed |
 //!

@@ -227,7 +227,7 @@ pub(super) fn reading(
     })
 }
 
-/// Shooting whose flow has a tolerance, in parts of the largest state, below the stated error of an orbit.
+/// Shooting with a flow whose tolerance is a tenth of the stated error of an orbit, where that is finer than what was asked for.
 fn as_known(shooting: Shooting, request: &Request, point: &Point) -> Shooting {
     let tolerance = shooting.flow_tolerance(request.tolerance);
     let known = point
@@ -288,7 +288,7 @@ fn balanced(request: &Request, value: f64) -> Result<Point, Error> {
 
 /// The flow errs by this part of the stated error of an orbit.
 const FINER: f64 = 0.1;
-/// No flow is asked for more than this.
+/// No smaller tolerance is asked for on that account.
 const FINEST: f64 = 1e-13;
 /// Accuracy of a first orbit that is corrected afterwards.
 const GUESSED: f64 = 1e-6;

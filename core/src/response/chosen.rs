@@ -45,7 +45,7 @@ const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 /// [asked for](crate::FrequencyResponse::by): the [contact equation](ContactEquation) where a law opens, that is has a piece without force, or
 /// has a corner or a jump at a level, and the [harmonic balance](HarmonicBalance) where every force is smooth. At a tolerance of 1e-8 or below it
 /// is the contact equation wherever a force is another function on the other side of a level. Where the stiffness of a law is unbounded on both
-/// sides of a level, as of `sgn(x)*|x|^0.6`, it is [shooting](Shooting). Where either has no equations for the
+/// sides of a level, as of `sgn(x)*|x|^0.6`, it is [shooting](Shooting). Where the contact equation or shooting has no equations for the
 /// system, finds no first orbit, or leads no further, the balance is tried: [`Branch::method`] says what a branch
 /// was followed by.
 ///
@@ -313,7 +313,7 @@ impl Follow for Chosen {
     }
 
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
-        // The contact equation begins with an orbit of the balance.
+        // The other methods begin with an orbit of the balance.
         self.balance.orbit(request, value)
     }
 

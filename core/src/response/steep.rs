@@ -1,4 +1,4 @@
-//! Laws whose stiffness is unbounded on both sides of a level, which are followed by shooting.
+//! Laws whose stiffness is unbounded on both sides of a level, which are followed by shooting by default.
 //!
 //! Where the motion comes to a height `h` beyond such a level, `gap^a` with `a` below one on both sides, it stays there for a time that goes
 //! as `h^(1/2)`, and its stiffness goes as `h^(a - 1)`. So the impulse of a perturbation there, and with it the monodromy, goes as

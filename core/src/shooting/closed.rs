@@ -1,4 +1,4 @@
-//! Orbits of other methods whose motion is to be read: closed as far as they are known.
+//! Orbits whose motion is to be read: closed as far as they are known.
 //!
 //! The state at the beginning of an orbit errs by as much as the orbit does anywhere. A motion from it carries that on, by up to what the
 //! tangent map of a part of the way makes of it, and does not come back. The periodic motion errs by no more than is stated. So where the
@@ -8,10 +8,10 @@
 //! |M(x_i) - x_(i+1)| > c e p                                                                                   (1)
 //! ```
 //!
-//! with the stated error `e`, as a part of peak-to-peak `p` of what it is of, one update of Newton's method towards `M(x_i) = x_(i+1)` is made with
-//! what is varied held; `c = 0.1`, and less where an orbit has several segments, or is repeated in several parts, since a motion over all of
-//! them adds up. Of an output (1) has no `p`, which is a length of states, and the update is always made. Where no error is stated
-//! nothing is known that the motion should be closed to. Beside a fold the update leads away: a state that is farther off than errors explain
+//! with the stated error `e`, as a part of peak-to-peak `p` of what it is of, Newton's method is applied to `M(x_i) = x_(i+1)` with what is varied held, until an update is
+//! below a thousandth, as the first one is as a rule; `c = 0.1`, and less where an orbit has several segments, or comes back after a part of its period, since a motion over all of
+//! them adds up. Of an output (1) has no `p`, which is a length of states, and it is always applied. Where no error is stated
+//! nothing is known that the motion should be closed to. Beside a fold it leads away: a state that is farther off than errors explain
 //! is not taken.
 //!
 //! Source: Parker and Chua (1989), Practical Numerical Algorithms for Chaotic Systems, section 5.3 (shooting from a state that is known nearly).
@@ -31,7 +31,8 @@ const CLOSED_EACH: f64 = 1e-3;
 /// States that are farther off than so many times the error are of another orbit.
 const FAR: f64 = 100.0;
 
-/// And than this part of the size, where the error is that of an output: states may err by more than it.
+/// States of an orbit whose error is that of an output may err by more than that; beyond this part of the size, or the error if that is more, they
+/// are of another orbit all the same.
 const AT_MOST: f64 = 1e-3;
 
 /// Whether a motion whose segments end so far from where the next ones begin is closed, by (1).
@@ -62,15 +63,20 @@ pub(super) fn states(
     solve::at_value(equations, &mut newton, &mut closed, options).ok()?;
     let size = 2.0 * point.size();
     let far = match problem.accuracy {
-        Accuracy::Output(_) => (FAR * (known(point)? * size + apart)).min(AT_MOST * size),
+        Accuracy::Output(_) => {
+            let error = known(point)? * size;
+            (FAR * (error + apart)).min((AT_MOST * size).max(error))
+        }
         Accuracy::Coordinate(_) | Accuracy::Coordinates => FAR * known(point)? * size,
     };
     (equations.apart(&closed, u) <= far).then(|| equations.states_of(&closed))
 }
 
-/// The stated error, if there is one.
+/// The stated error, if there is one: one of zero is that of an output at rest.
 fn known(point: &Point) -> Option<f64> {
-    point.error.filter(|error| error.is_finite())
+    point
+        .error
+        .filter(|error| error.is_finite() && *error > 0.0)
 }
 
 /// What the error of an orbit is a part of, as a length of states: the shortest that it may be.

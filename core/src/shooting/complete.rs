@@ -125,16 +125,16 @@ fn read<'p>(
     if closed::is_closed(problem, point, apart) {
         return Ok((reader, closed));
     }
-    let states = closed::states(problem, &mut equations, &u, point, apart);
+    let nearer = closed::states(problem, &mut equations, &u, point, apart).and_then(|states| {
+        let u = equations.unknowns_of(&states, value);
+        let (reader, nearer) = along(&mut equations, &u).ok()?;
+        (nearer < apart).then_some((reader, states))
+    });
     if problem.cancel.is_cancelled() {
         return Err(failed(FlowError::Cancelled { phase: 0.0 }).into());
     }
-    let Some(states) = states else {
-        return Ok((reader, closed));
-    };
-    let u = equations.unknowns_of(&states, value);
-    // What was read stands where the other motion cannot be.
-    let Ok((reader, _)) = along(&mut equations, &u) else {
+    // What was read stands where the other motion is not, or closes no better.
+    let Some((reader, states)) = nearer else {
         return Ok((reader, closed));
     };
     closed.orbit.states = states;

@@ -47,14 +47,15 @@ fn off(system: &dyn System, signal: &str, asked: Option<&str>) -> (f64, usize) {
         } else {
             point.peak_to_peak().max(size)
         };
-        let stated = point.error.expect("an error") * of + 1e-9 * size;
+        let error = point.error.filter(|error| error.is_finite());
+        let stated = error.expect("an error") * of + 1e-9 * size;
         let apart = found.peak_to_peak() - known.peak_to_peak();
         worst = worst.max(apart.abs() / stated);
         let [found, known] = [branch.complete(point), near.complete(&same)];
         let [found, known] = [found, known].map(|point| point.expect("an orbit").motion().rms);
         let apart = found
             .zip(known)
-            .map_or(f64::NAN, |(found, known)| found - known);
+            .map_or(f64::INFINITY, |(found, known)| found - known);
         if asked.is_none() {
             worst = worst.max(apart.abs() / stated);
         }

@@ -81,7 +81,7 @@ struct Row {
     engine: fn() -> Box<dyn Floquet>,
 }
 
-/// The row of a method, which stands here alone.
+/// All methods, each named here once; the first is the default.
 #[rustfmt::skip]
 const ROWS: &[Row] = &[
     row(Method::Default, Family::Default, "default", || Box::new(Monodromy::new(false))),
@@ -108,7 +108,7 @@ const fn row(
 }
 
 impl Method {
-    /// The first row if there is none: `method_tests` asks for one of every method.
+    /// Without a row of its own that of the default; `method_tests` looks for this.
     fn row(self) -> &'static Row {
         let own = ROWS.iter().find(|row| row.method == self);
         own.unwrap_or(&ROWS[0])

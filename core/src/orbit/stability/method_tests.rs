@@ -118,7 +118,6 @@ fn meissner(a: f64, b: f64, omega: f64) -> [Complex<f64>; 2] {
     roots(2.0 * ca * cb - (a / b + b / a) * sa * sb, 1.0)
 }
 
-/// In the exact equation a sine is above and below for half a period each.
 /// What has no row is called by the name of the first.
 #[test]
 fn every_method_has_a_row() {
@@ -127,6 +126,7 @@ fn every_method_has_a_row() {
     }
 }
 
+/// In the exact equation a sine is above and below for half a period each.
 #[test]
 fn meissners_equation() {
     for (a, b, omega) in [(1.0, 1.7, 2.3), (1.0, 2.0, 1.1), (0.3, 1.4, 1.0)] {

@@ -68,8 +68,7 @@ fn a_damper_in_series_has_its_complex_stiffness() {
 }
 
 /// The state after a period, peak-to-peak of `x`, the largest force, and the part of the time in contact, of the equations as they are: three
-/// states, by the method of Kutta
-/// (1901).
+/// states, by the method of Kutta (1901).
 fn integrated(k: f64, c: f64, omega: f64, start: [f64; 3]) -> ([f64; 3], [f64; 3]) {
     let push = |[x, _, z]: [f64; 3]| (x - z).max(0.0).powf(1.5);
     let slope = |t: f64, s: [f64; 3]| {
