@@ -115,10 +115,7 @@ fn read<'p>(
     let value = point.value;
     let failed = |reason| MotionError { value, reason };
     let along = |equations: &mut Equations, u: &[f64]| {
-        let recurrence = &equations.span.recurrence;
-        let mut reader = problem.reader(value, asked, recurrence, harmonics);
-        let apart = equations.trace_closing(u, &mut |stretch| reader.include(stretch));
-        apart.map(|apart| (reader, apart))
+        reader_along(problem, equations, u, asked, harmonics)
     };
     let (reader, apart) = along(&mut equations, &u).map_err(failed)?;
     let mut closed = point.clone();
@@ -149,10 +146,23 @@ fn read_along<'p>(
 ) -> Result<Reader<'p>, Error> {
     let (mut equations, u) = start::of_point(problem, point)?;
     let value = point.value;
-    let mut reader = problem.reader(value, asked, &equations.span.recurrence, 0);
-    let traced = equations.trace(&u, &mut |stretch| reader.include(stretch));
-    traced.map_err(|reason| MotionError { value, reason })?;
+    let (reader, _) = reader_along(problem, &mut equations, &u, asked, 0)
+        .map_err(|reason| MotionError { value, reason })?;
     Ok(reader)
+}
+
+/// What is asked for, along the motion from `u`, and how far it is from closed.
+fn reader_along<'p>(
+    problem: &'p ShootingProblem,
+    equations: &mut Equations,
+    u: &[f64],
+    asked: Asked,
+    harmonics: usize,
+) -> Result<(Reader<'p>, f64), FlowError> {
+    let recurrence = &equations.span.recurrence;
+    let mut reader = problem.reader(u[u.len() - 1], asked, recurrence, harmonics);
+    let apart = equations.trace(u, &mut |stretch| reader.include(stretch))?;
+    Ok((reader, apart))
 }
 
 /// Positions at equal distances over the period, so many in each period of the declaration, coordinate by coordinate.

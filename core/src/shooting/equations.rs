@@ -401,28 +401,12 @@ impl Equations {
         }
     }
 
-    /// Shows the orbit `u` to `see`, stretch by stretch.
+    /// Shows the orbit `u` to `see`, stretch by stretch. Says how far from the beginnings of segments those before them end, of velocities in
+    /// units of the frequency.
     ///
     /// # Errors
     /// If the motion cannot be continued.
     pub(super) fn trace(
-        &mut self,
-        u: &[f64],
-        see: &mut dyn FnMut(&dyn Stretch),
-    ) -> Result<(), FlowError> {
-        self.flow.set(self.frame.variable, u[u.len() - 1])?;
-        for segment in 0..self.span.segments {
-            self.begin(u, segment);
-            self.advance(segment, false, Some(see))?;
-        }
-        Ok(())
-    }
-
-    /// The same, and says how far from the beginnings of segments those before them end, of velocities in units of the frequency.
-    ///
-    /// # Errors
-    /// If the motion cannot be continued.
-    pub(super) fn trace_closing(
         &mut self,
         u: &[f64],
         see: &mut dyn FnMut(&dyn Stretch),

@@ -11,6 +11,13 @@
 //!
 //! whose error grows as `k` rounding errors.
 
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the instruction set of its caller"
+)]
+
+use std::array::from_fn;
+
 use multiversion::multiversion;
 
 /// Phases are handled in groups of this many; slices of phases have a multiple of it as their length.
@@ -20,6 +27,12 @@ pub(crate) const LANES: usize = 8;
 pub(crate) const fn padded(count: usize) -> usize {
     count.div_ceil(LANES) * LANES
 }
+
+/// Groups whose values are computed at once.
+const TOGETHER: usize = 2;
+
+/// Harmonics that are summed in one pass over phases.
+const BLOCK: usize = 4;
 
 type Group = [f64; LANES];
 
@@ -38,22 +51,43 @@ pub(crate) fn evaluate(
     first: &mut [f64],
     second: &mut [f64],
 ) {
-    let [a, b] = series;
-    for index in 0..cosines.len() / LANES {
-        let (cosine, sine) = (group(cosines, index), group(sines, index));
-        let (mut c, mut s) = ([1.0; LANES], [0.0; LANES]);
-        let (mut x, mut y) = ([a[0]; LANES], [b[0]; LANES]);
-        for (p, q) in a[1..].chunks_exact(2).zip(b[1..].chunks_exact(2)) {
+    // Of one group each harmonic waits for the one before; several groups keep the machine busy meanwhile.
+    let groups = cosines.len() / LANES;
+    let whole = groups / TOGETHER * TOGETHER;
+    for index in (0..whole).step_by(TOGETHER) {
+        evaluate_groups::<TOGETHER>(series, [cosines, sines], [first, second], index);
+    }
+    for index in whole..groups {
+        evaluate_groups::<1>(series, [cosines, sines], [first, second], index);
+    }
+}
+
+/// The same for groups from this one on.
+#[inline(always)]
+fn evaluate_groups<const G: usize>(
+    [a, b]: [&[f64]; 2],
+    [cosines, sines]: [&[f64]; 2],
+    [first, second]: [&mut [f64]; 2],
+    index: usize,
+) {
+    let cosine: [Group; G] = from_fn(|g| group(cosines, index + g));
+    let sine: [Group; G] = from_fn(|g| group(sines, index + g));
+    let (mut c, mut s) = ([[1.0; LANES]; G], [[0.0; LANES]; G]);
+    let (mut x, mut y) = ([[a[0]; LANES]; G], [[b[0]; LANES]; G]);
+    for (p, q) in a[1..].chunks_exact(2).zip(b[1..].chunks_exact(2)) {
+        for g in 0..G {
             for lane in 0..LANES {
-                let next = c[lane] * cosine[lane] - s[lane] * sine[lane];
-                s[lane] = s[lane] * cosine[lane] + c[lane] * sine[lane];
-                c[lane] = next;
-                x[lane] += p[0] * c[lane] + p[1] * s[lane];
-                y[lane] += q[0] * c[lane] + q[1] * s[lane];
+                let next = c[g][lane] * cosine[g][lane] - s[g][lane] * sine[g][lane];
+                s[g][lane] = s[g][lane] * cosine[g][lane] + c[g][lane] * sine[g][lane];
+                c[g][lane] = next;
+                x[g][lane] += p[0] * c[g][lane] + p[1] * s[g][lane];
+                y[g][lane] += q[0] * c[g][lane] + q[1] * s[g][lane];
             }
         }
-        first[index * LANES..][..LANES].copy_from_slice(&x);
-        second[index * LANES..][..LANES].copy_from_slice(&y);
+    }
+    for g in 0..G {
+        first[(index + g) * LANES..][..LANES].copy_from_slice(&x[g]);
+        second[(index + g) * LANES..][..LANES].copy_from_slice(&y[g]);
     }
 }
 
@@ -67,9 +101,8 @@ pub(crate) fn project(
     s: &mut [f64],
     series: &mut [f64],
 ) {
-    let groups = values.len() / LANES;
     let mut sum = [0.0; LANES];
-    for index in 0..groups {
+    for index in 0..values.len() / LANES {
         let value = group(values, index);
         for lane in 0..LANES {
             sum[lane] += value[lane];
@@ -81,11 +114,29 @@ pub(crate) fn project(
         *to = 2.0 * value;
     }
     s[..values.len()].fill(0.0);
-    for pair in series[1..].chunks_exact_mut(2) {
-        let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
-        for index in 0..groups {
-            let (cosine, sine) = (group(cosines, index), group(sines, index));
-            let (old_c, old_s) = (group(c, index), group(s, index));
+    // Several harmonics follow from phases that are loaded once.
+    let (blocks, rest) = series[1..].as_chunks_mut::<{ 2 * BLOCK }>();
+    for block in blocks {
+        project_block::<BLOCK>([cosines, sines], [c, s], block);
+    }
+    for pair in rest.chunks_exact_mut(2) {
+        project_block::<1>([cosines, sines], [c, s], pair);
+    }
+}
+
+/// Adds the next harmonics.
+#[inline(always)]
+fn project_block<const H: usize>(
+    [cosines, sines]: [&[f64]; 2],
+    [c, s]: [&mut [f64]; 2],
+    series: &mut [f64],
+) {
+    let mut x = [[0.0; LANES]; H];
+    let mut y = [[0.0; LANES]; H];
+    for index in 0..cosines.len() / LANES {
+        let (cosine, sine) = (group(cosines, index), group(sines, index));
+        let (mut old_c, mut old_s) = (group(c, index), group(s, index));
+        for (x, y) in x.iter_mut().zip(&mut y) {
             let (mut new_c, mut new_s) = ([0.0; LANES], [0.0; LANES]);
             for lane in 0..LANES {
                 new_c[lane] = old_c[lane] * cosine[lane] - old_s[lane] * sine[lane];
@@ -93,11 +144,14 @@ pub(crate) fn project(
                 x[lane] += new_c[lane];
                 y[lane] += new_s[lane];
             }
-            c[index * LANES..][..LANES].copy_from_slice(&new_c);
-            s[index * LANES..][..LANES].copy_from_slice(&new_s);
+            (old_c, old_s) = (new_c, new_s);
         }
-        pair[0] += total(&x);
-        pair[1] += total(&y);
+        c[index * LANES..][..LANES].copy_from_slice(&old_c);
+        s[index * LANES..][..LANES].copy_from_slice(&old_s);
+    }
+    for ((pair, x), y) in series.chunks_exact_mut(2).zip(&x).zip(&y) {
+        pair[0] += total(x);
+        pair[1] += total(y);
     }
 }
 

@@ -248,6 +248,23 @@ fn count(least: usize) -> usize {
     if between >= least { between } else { power }
 }
 
+/// How many times the steps would make of an error what is aimed at.
+fn factor(error: f64, aim: f64) -> f64 {
+    let factor = (error / (TARGET * aim)).powf(1.0 / 6.0);
+    // Steps that are far too long leave nothing finite: an infinite factor.
+    if factor.is_nan() {
+        f64::INFINITY
+    } else {
+        factor
+    }
+}
+
+/// Steps per period for the next orbit, after those that sufficed.
+fn after_success(density: f64, error: f64, aim: f64) -> f64 {
+    let next = density * factor(error, aim).clamp(0.5, 1.3);
+    next.clamp(FIRST_DENSITY, LARGEST_DENSITY)
+}
+
 impl Floquet for Monodromy {
     fn multipliers(&mut self, orbit: &Orbit<'_>, aim: f64) -> Found {
         if !self.linearised.load(orbit) {
@@ -269,28 +286,25 @@ impl Floquet for Monodromy {
                 self.density = density.min(SHARPEST);
                 return found;
             }
-            let factor = (error / (TARGET * aim)).powf(1.0 / 6.0);
-            // Steps that are far too long leave nothing finite: an infinite factor.
-            let factor = if factor.is_nan() {
-                f64::INFINITY
-            } else {
-                factor
-            };
             if (sight.is_some() || self.graded) && error <= aim && density < LARGEST_DENSITY {
                 let (finer, halved) = self.halved(orbit, density, &found);
                 if halved <= aim {
-                    self.density = density;
+                    // A law that is sharp was seen with so many steps, and may not be with fewer.
+                    self.density = if sight.is_some() {
+                        density
+                    } else {
+                        after_success(density, error.max(halved), aim)
+                    };
                     return finer;
                 }
                 density = (2.0 * density).min(LARGEST_DENSITY);
                 continue;
             }
             if density >= LARGEST_DENSITY || error <= aim {
-                let next = density * factor.clamp(0.5, 1.3);
-                self.density = next.clamp(FIRST_DENSITY, LARGEST_DENSITY);
+                self.density = after_success(density, error, aim);
                 return found;
             }
-            density = (density * factor.clamp(1.3, 4.0)).min(LARGEST_DENSITY);
+            density = (density * factor(error, aim).clamp(1.3, 4.0)).min(LARGEST_DENSITY);
         }
     }
 

@@ -14,7 +14,8 @@
 //! p_0 = p_0n + r / (1 - r) (p_0n - p_0f) + O(s^6),      r = (s_n / s_f)^4                                        (2)
 //! ```
 //!
-//! is Richardson's extrapolation.
+//! is Richardson's extrapolation. Where the points of the curve are is chance, and they may be as far from the end as each other. So both
+//! places are orbits computed inside of the step that passes the end, at an eighth and a quarter of it, on the longer side.
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, section 9.3 (generalised flip: the curve of folds of twice the
 //! period, and its order of contact).
@@ -24,6 +25,8 @@ use super::special_monitor::{ROUNDING, SpecialMonitor};
 use super::special_search::apart;
 use super::{Special, SpecialKind};
 use crate::continuation::follow::{CurvePoint, Step};
+use crate::continuation::locate::inside;
+use crate::continuation::newton::Newton;
 use crate::shooting::equations::Equations;
 
 /// Two differences point opposite ways if the cosine of their angle is below this.
@@ -32,6 +35,9 @@ const OPPOSITE: f64 = -0.9;
 const MOST: f64 = 10.0;
 /// Their error is what (2) would change, at most so many times by how much they differ.
 const LARGEST: f64 = 1e6;
+
+/// How far from the end both places are, in parts of the step.
+const BESIDE: [f64; 2] = [0.125, 0.25];
 
 /// What orbits have that those of half the period have not is as good as nothing below this part of what it was.
 const NEARLY: f64 = 0.05;
@@ -136,17 +142,16 @@ impl SpecialMonitor<'_, '_> {
         true
     }
 
-    /// The degenerate doubling between two points: what both say of it, extrapolated by (2). By how much they differ, or what that changes if it is
-    /// more, is the error.
-    pub(super) fn end(&mut self, curve: &Curve<'_>, step: Step<'_>) {
-        let seen = [step.before, step.next].map(|point| {
-            let halved = HalfPeriodDifference::of(&curve.equations, &point.u)?;
-            Some((halved.size(), halved.end(&curve.equations, point)?))
-        });
+    /// The degenerate doubling within a step: what two places beside it say, extrapolated by (2). By how much they differ, or what that changes
+    /// if it is more, is the error.
+    pub(super) fn end(&mut self, curve: &mut Curve<'_>, newton: &mut Newton, step: Step<'_>) {
+        let seen = [step.before, step.next].map(|point| seen_from(curve, point));
         let [Some(a), Some(b)] = seen else {
             return;
         };
-        let (near, far) = if a.0 < b.0 { (a, b) } else { (b, a) };
+        let (near, far) = self
+            .beside(curve, newton, step, a.0 / (a.0 + b.0))
+            .unwrap_or(if a.0 < b.0 { (a, b) } else { (b, a) });
         let share = (near.0 / far.0).powi(4);
         let wanted = share / (1.0 - share);
         let factor = wanted.min(MOST);
@@ -159,4 +164,29 @@ impl SpecialMonitor<'_, '_> {
             after: self.points.len(),
         });
     }
+
+    /// The nearer and the farther place on the longer side of the end, which is at a part of a step.
+    fn beside(
+        &self,
+        curve: &mut Curve<'_>,
+        newton: &mut Newton,
+        step: Step<'_>,
+        end: f64,
+    ) -> Option<(Seen, Seen)> {
+        let onward = if end < 0.5 { 1.0 } else { -1.0 };
+        let mut place = |part: f64| {
+            let point = inside(curve, newton, step, end + onward * part, self.options)?;
+            seen_from(curve, &point)
+        };
+        let (near, far) = (place(BESIDE[0])?, place(BESIDE[1])?);
+        (near.0 < far.0).then_some((near, far))
+    }
+}
+
+/// How large the difference is, and the parameters (1).
+type Seen = (f64, [f64; 2]);
+
+fn seen_from(curve: &Curve<'_>, point: &CurvePoint) -> Option<Seen> {
+    let halved = HalfPeriodDifference::of(&curve.equations, &point.u)?;
+    Some((halved.size(), halved.end(&curve.equations, point)?))
 }

@@ -47,7 +47,7 @@ pub(super) const ROUNDING: f64 = 1e-12;
 pub(super) struct SpecialMonitor<'p, 'a> {
     problem: &'p ShootingProblem,
     plane: &'p Plane<'a>,
-    options: NewtonOptions,
+    pub(super) options: NewtonOptions,
     pub(super) functions: TestFunctions<'p>,
     /// The last two points.
     seen: [Option<Tests>; 2],
@@ -117,7 +117,7 @@ impl<'p, 'a> SpecialMonitor<'p, 'a> {
             Visit::Again(_) | Visit::Failed(..) | Visit::Onward(_) => {}
             Visit::Point(at) => return self.read(curve, at),
             Visit::Between(before, next) if self.joined => {
-                self.end(curve, Step { before, next });
+                self.end(curve, newton, Step { before, next });
                 return Continue::Break(Halt::Stop);
             }
             Visit::Between(before, next) => {

@@ -16,6 +16,7 @@ use crate::numeric::fourier::gauss;
 use crate::numeric::fourier::gauss::Rule;
 use crate::numeric::fourier::grading::{Grading, power_for};
 use crate::numeric::fourier::kernels::{evaluate, padded, project};
+use crate::numeric::fourier::phases::sines_and_cosines;
 use crate::numeric::fourier::series;
 use crate::numeric::fourier::taylor::Taylor;
 
@@ -239,15 +240,17 @@ impl Quadrature {
         let width = end - start;
         for (j, (node, weight)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
             let base = if node.is_sign_negative() { end } else { start };
-            (self.sines[j], self.cosines[j]) = (base + width * node).sin_cos();
+            // Phases stand where the gaps will.
+            self.gap[j] = base + width * node;
             self.weights[j] = weight * width / std::f64::consts::TAU;
         }
         // Nodes that only fill the last group stand where the last one stands and weigh nothing.
         let count = rule.nodes.len();
         for j in count..nodes {
-            (self.sines[j], self.cosines[j]) = (self.sines[count - 1], self.cosines[count - 1]);
+            self.gap[j] = self.gap[count - 1];
             self.weights[j] = 0.0;
         }
+        sines_and_cosines(&self.gap, &mut self.sines, &mut self.cosines);
         self.current = index;
     }
 
