@@ -22,11 +22,10 @@
 
 use super::codimension_one::Curve;
 use super::special_monitor::{ROUNDING, SpecialMonitor};
-use super::special_search::apart;
+use super::special_search::{ReferenceCurve, Search, apart};
 use super::{Special, SpecialKind};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::inside;
-use crate::continuation::newton::Newton;
 use crate::shooting::equations::Equations;
 
 /// Two differences point opposite ways if the cosine of their angle is below this.
@@ -100,7 +99,7 @@ impl HalfPeriodDifference {
     }
 }
 
-impl SpecialMonitor<'_, '_> {
+impl<'a> SpecialMonitor<'_, 'a> {
     /// Whether an orbit of half the period lies between the last point and this one.
     pub(super) fn passes_half_the_period(&mut self, curve: &Curve<'_>, at: &CurvePoint) -> bool {
         if self.functions.shift != Some(-1.0) {
@@ -142,45 +141,58 @@ impl SpecialMonitor<'_, '_> {
         true
     }
 
-    /// The degenerate doubling within a step: what two places beside it say, extrapolated by (2). By how much they differ, or what that changes
-    /// if it is more, is the error.
-    pub(super) fn end(&mut self, curve: &mut Curve<'_>, newton: &mut Newton, step: Step<'_>) {
-        let seen = [step.before, step.next].map(|point| seen_from(curve, point));
-        let [Some(a), Some(b)] = seen else {
+    /// The degenerate doubling within a step. What the flow leaves in it shows by the equations of the error reference.
+    pub(super) fn end(&mut self, search: &mut Search<'_, 'a>) {
+        let Some((values, error)) = degenerate(search) else {
             return;
         };
-        let (near, far) = self
-            .beside(curve, newton, step, a.0 / (a.0 + b.0))
-            .unwrap_or(if a.0 < b.0 { (a, b) } else { (b, a) });
-        let share = (near.0 / far.0).powi(4);
-        let wanted = share / (1.0 - share);
-        let factor = wanted.min(MOST);
-        let values = [0, 1].map(|i| near.1[i] + factor * (near.1[i] - far.1[i]));
-        let size = values[0].abs().max(values[1].abs());
+        let reference = ReferenceCurve::of(self.problem, search.curve);
+        let moved = reference.and_then(|mut reference| {
+            let part = reference.part;
+            let (moved, _) = degenerate(&mut reference.search(search.step))?;
+            Some(part * apart(values, moved))
+        });
         self.special.push(Special {
             kind: SpecialKind::Degenerate,
             values,
-            error: wanted.clamp(1.0, LARGEST) * apart(near.1, far.1) + ROUNDING * size,
+            error: error + moved.unwrap_or(error),
             after: self.points.len(),
         });
     }
+}
 
-    /// The nearer and the farther place on the longer side of the end, which is at a part of a step.
-    fn beside(
-        &self,
-        curve: &mut Curve<'_>,
-        newton: &mut Newton,
-        step: Step<'_>,
-        end: f64,
-    ) -> Option<(Seen, Seen)> {
-        let onward = if end < 0.5 { 1.0 } else { -1.0 };
-        let mut place = |part: f64| {
-            let point = inside(curve, newton, step, end + onward * part, self.options)?;
-            seen_from(curve, &point)
-        };
-        let (near, far) = (place(BESIDE[0])?, place(BESIDE[1])?);
-        (near.0 < far.0).then_some((near, far))
-    }
+/// What two places beside the end say of it, extrapolated by (2), and the error: by how much they differ, or what that changes if it is more.
+fn degenerate(search: &mut Search<'_, '_>) -> Option<([f64; 2], f64)> {
+    let Step { before, next } = search.step;
+    let [a, b] = [before, next].map(|point| seen_from(search.curve, point));
+    let (a, b) = (a?, b?);
+    let beside = places_beside(search, a.0 / (a.0 + b.0));
+    let (near, far) = beside.unwrap_or(if a.0 < b.0 { (a, b) } else { (b, a) });
+    let share = (near.0 / far.0).powi(4);
+    let wanted = share / (1.0 - share);
+    let factor = wanted.min(MOST);
+    let values = [0, 1].map(|i| near.1[i] + factor * (near.1[i] - far.1[i]));
+    let size = values[0].abs().max(values[1].abs());
+    let error = wanted.clamp(1.0, LARGEST) * apart(near.1, far.1) + ROUNDING * size;
+    Some((values, error))
+}
+
+/// The nearer and the farther place on the longer side of the end, which is at a part of a step.
+fn places_beside(search: &mut Search<'_, '_>, end: f64) -> Option<(Seen, Seen)> {
+    let onward = if end < 0.5 { 1.0 } else { -1.0 };
+    let mut place = |part: f64| {
+        let part = end + onward * part;
+        let point = inside(
+            search.curve,
+            search.newton,
+            search.step,
+            part,
+            search.options,
+        )?;
+        seen_from(search.curve, &point)
+    };
+    let (near, far) = (place(BESIDE[0])?, place(BESIDE[1])?);
+    (near.0 < far.0).then_some((near, far))
 }
 
 /// How large the difference is, and the parameters (1).

@@ -45,9 +45,9 @@ pub(super) const ROUNDING: f64 = 1e-12;
 
 /// What is looked at along a curve.
 pub(super) struct SpecialMonitor<'p, 'a> {
-    problem: &'p ShootingProblem,
+    pub(super) problem: &'p ShootingProblem,
     plane: &'p Plane<'a>,
-    pub(super) options: NewtonOptions,
+    options: NewtonOptions,
     pub(super) functions: TestFunctions<'p>,
     /// The last two points.
     seen: [Option<Tests>; 2],
@@ -116,10 +116,6 @@ impl<'p, 'a> SpecialMonitor<'p, 'a> {
         match *seen {
             Visit::Again(_) | Visit::Failed(..) | Visit::Onward(_) => {}
             Visit::Point(at) => return self.read(curve, at),
-            Visit::Between(before, next) if self.joined => {
-                self.end(curve, newton, Step { before, next });
-                return Continue::Break(Halt::Stop);
-            }
             Visit::Between(before, next) => {
                 let mut search = Search {
                     curve,
@@ -127,6 +123,10 @@ impl<'p, 'a> SpecialMonitor<'p, 'a> {
                     options: self.options,
                     step: Step { before, next },
                 };
+                if self.joined {
+                    self.end(&mut search);
+                    return Continue::Break(Halt::Stop);
+                }
                 self.between(&mut search);
             }
         }
