@@ -254,7 +254,7 @@ fn add_products(a: &[f64], b: &[f64], out: &mut [f64]) {
     }
 }
 
-/// The same of some rows.
+/// The same of some rows: columns by lanes, and those that are left at once.
 #[inline(always)]
 #[allow(
     clippy::inline_always,
@@ -263,28 +263,47 @@ fn add_products(a: &[f64], b: &[f64], out: &mut [f64]) {
 fn add_rows<const COUNT: usize>(order: usize, a: &[f64], b: &[f64], out: &mut [f64]) {
     let whole = order - order % LANES;
     for column in (0..whole).step_by(LANES) {
-        let mut sums = [[0.0; LANES]; COUNT];
-        for (sums, out) in sums.iter_mut().zip(out.chunks_exact(order)) {
-            sums.copy_from_slice(&out[column..][..LANES]);
-        }
-        for (k, b) in b.chunks_exact(order).enumerate() {
-            let (b, _) = b[column..].as_chunks::<LANES>();
-            for (row, sums) in sums.iter_mut().enumerate() {
-                let factor = a[row * order + k];
-                for l in 0..LANES {
-                    sums[l] += factor * b[0][l];
-                }
+        add_block::<COUNT, LANES>(order, column, a, b, out);
+    }
+    match order - whole {
+        1 => add_block::<COUNT, 1>(order, whole, a, b, out),
+        2 => add_block::<COUNT, 2>(order, whole, a, b, out),
+        3 => add_block::<COUNT, 3>(order, whole, a, b, out),
+        4 => add_block::<COUNT, 4>(order, whole, a, b, out),
+        5 => add_block::<COUNT, 5>(order, whole, a, b, out),
+        6 => add_block::<COUNT, 6>(order, whole, a, b, out),
+        7 => add_block::<COUNT, 7>(order, whole, a, b, out),
+        _ => {}
+    }
+}
+
+/// The same of so many columns from one on.
+#[inline(always)]
+#[allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the instruction set of its caller"
+)]
+fn add_block<const COUNT: usize, const WIDTH: usize>(
+    order: usize,
+    column: usize,
+    a: &[f64],
+    b: &[f64],
+    out: &mut [f64],
+) {
+    let mut sums = [[0.0; WIDTH]; COUNT];
+    for (sums, out) in sums.iter_mut().zip(out.chunks_exact(order)) {
+        sums.copy_from_slice(&out[column..][..WIDTH]);
+    }
+    for (k, b) in b.chunks_exact(order).enumerate() {
+        let b = &b[column..][..WIDTH];
+        for (row, sums) in sums.iter_mut().enumerate() {
+            let factor = a[row * order + k];
+            for l in 0..WIDTH {
+                sums[l] += factor * b[l];
             }
-        }
-        for (out, sums) in out.chunks_exact_mut(order).zip(&sums) {
-            out[column..][..LANES].copy_from_slice(sums);
         }
     }
-    for (a, out) in a.chunks_exact(order).zip(out.chunks_exact_mut(order)) {
-        for (column, out) in out.iter_mut().enumerate().skip(whole) {
-            for (x, y) in a.iter().zip(b[column..].iter().step_by(order)) {
-                *out += x * y;
-            }
-        }
+    for (out, sums) in out.chunks_exact_mut(order).zip(&sums) {
+        out[column..][..WIDTH].copy_from_slice(sums);
     }
 }
