@@ -11,6 +11,14 @@
 //! g''/2 = (g'(tau + d) - g'(tau - d)) / (4 d) + O(d^2)                                                         (1)
 //! ```
 //!
+//! and with the second derivative of the rate, from the same ones, the next extreme of the gap is at
+//!
+//! ```text
+//! 2 |g''/g'''| = d |g'(tau + d) - g'(tau - d)| / |g'(tau + d) - 2 g'(tau) + g'(tau - d)|                       (2)
+//! ```
+//!
+//! if nothing else bends it. Where there is none, since two are about to be born, the extreme moves as fast as if it were about to end there.
+//!
 //! Source: Abramowitz and Stegun (1964), Handbook of Mathematical Functions, section 25.3 (numerical differentiation).
 
 use crate::contact_equation::equations::pass_results::GapExtreme;
@@ -69,6 +77,13 @@ impl Gaps<'_> {
     pub(in crate::contact_equation) fn bend(&self, contact: usize, phase: f64) -> f64 {
         let rate = |phase: f64| self.gap(contact, phase)[1];
         (rate(phase + BEND) - rate(phase - BEND)) / (4.0 * BEND * self.values.base)
+    }
+
+    /// (2): how far an extreme is from the one that its gap would have next.
+    pub(in crate::contact_equation) fn lone(&self, contact: usize, phase: f64) -> f64 {
+        let at = [phase - BEND, phase, phase + BEND];
+        let [before, here, after] = at.map(|phase| self.gap(contact, phase)[1]);
+        BEND * (after - before).abs() / (after - 2.0 * here + before).abs()
     }
 }
 

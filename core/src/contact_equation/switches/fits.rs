@@ -7,7 +7,7 @@ use super::plan;
 use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::equations::{BACK, Equations};
 use crate::contact_equation::linear_part::configuration::Configuration;
-use crate::contact_equation::orbit::gaps::room;
+use crate::contact_equation::orbit::gaps::{Gaps, room};
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::run::Run;
 use crate::contact_equation::skeleton::placement::{Switch, Told};
@@ -182,10 +182,17 @@ impl Run<'_> {
     /// Whether an extreme that is watched is far from its level, or comes near another one, with which it may end.
     fn is_watched_in_vain(&self, u: &[f64], found: &[GapExtreme]) -> bool {
         let skeleton = &self.equations.skeleton;
+        let motion = Motion::of(&self.equations);
+        let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
+        let gaps = self.gaps(&at);
         skeleton.switches.iter().enumerate().any(|(index, switch)| {
             let Told::First { other, .. } = switch.told else {
                 return false;
             };
+            let square = u[skeleton.slot(other)];
+            if square > 0.0 {
+                return false;
+            }
             let extreme = GapExtreme {
                 contact: switch.contact,
                 interval: 0,
@@ -193,9 +200,9 @@ impl Run<'_> {
                 gap: 0.0,
                 maximum: switch.rises,
             };
-            let room = room(&extreme, found, skeleton.length);
+            let room = plan::Room::of(&gaps, &extreme, found, skeleton.length);
             let jumps = self.has_leap(switch.contact, switch.level);
-            plan::is_far(u[skeleton.slot(other)], room, jumps)
+            plan::is_far(square, room, jumps)
         })
     }
 
@@ -243,7 +250,7 @@ impl Run<'_> {
             if beyond > if at_once { 0.0 } else { BEYOND * size } {
                 return Fits::No;
             }
-            let room = || room(extreme, all, skeleton.length);
+            let room = |gaps: &Gaps<'_>| plan::Room::of(gaps, extreme, all, skeleton.length);
             if (above < 0.0) == maximum && self.is_near(u, extreme, level, room) {
                 fits = Fits::Soon;
             }
@@ -257,7 +264,7 @@ impl Run<'_> {
         u: &[f64],
         extreme: &GapExtreme,
         level: usize,
-        room: impl FnOnce() -> f64,
+        room: impl FnOnce(&Gaps<'_>) -> plan::Room,
     ) -> bool {
         let (contact, phase) = (extreme.contact, extreme.phase);
         let above = extreme.gap - self.equations.values.contacts[contact].levels[level];
@@ -268,7 +275,7 @@ impl Run<'_> {
         let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
         let gaps = self.gaps(&at);
         let square = -above / gaps.bend(contact, phase);
-        square <= 0.0 && plan::is_near(square, room(), self.has_leap(contact, level))
+        square <= 0.0 && plan::is_near(square, room(&gaps), self.has_leap(contact, level))
     }
 
     /// Whether a pair of switches stands at an extreme: both at it, where it is short of the level, or else around it.

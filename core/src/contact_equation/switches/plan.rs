@@ -34,22 +34,45 @@ const TOO_NEAR: f64 = 0.3;
 /// Extremes of different gaps as near as this are in one place.
 const TOGETHER: f64 = 1e-6;
 
+/// How far an extreme is from the next one of its gap.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Room {
+    /// From one that is there.
+    seen: f64,
+    /// From one that there would be if it bent no more than it does here, too: an extreme that has none beside it moves as fast where its gap is
+    /// almost straight, and equations in its phase turn back where the branch does not.
+    bent: f64,
+}
+
+impl Room {
+    pub(super) fn of(
+        gaps: &Gaps<'_>,
+        extreme: &GapExtreme,
+        extremes: &[GapExtreme],
+        length: f64,
+    ) -> Self {
+        let seen = room(extreme, extremes, length);
+        let bent = seen.min(gaps.lone(extreme.contact, extreme.phase));
+        Self { seen, bent }
+    }
+}
+
 /// Whether an extreme that is short of a level by this `H` is to be watched, with so much room until the next one.
-pub(super) fn is_near(square: f64, room: f64, jumps: bool) -> bool {
+pub(super) fn is_near(square: f64, room: Room, jumps: bool) -> bool {
     let clear = if jumps {
-        room > LONELY
+        room.seen > LONELY
     } else {
-        square >= -NEAR_ANOTHER * room * room
+        square >= -NEAR_ANOTHER * room.bent * room.bent
     };
     clear && (-NEAR..=0.0).contains(&square)
 }
 
 /// Whether one that is watched is to be watched no more.
-pub(super) fn is_far(square: f64, room: f64, jumps: bool) -> bool {
+pub(super) fn is_far(square: f64, room: Room, jumps: bool) -> bool {
     let near = if jumps {
-        square <= 0.0 && room <= TOO_NEAR
+        square <= 0.0 && room.seen <= TOO_NEAR
     } else {
-        square < -FAR_FOR_ANOTHER * room * room
+        square < -FAR_FOR_ANOTHER * room.bent * room.bent
     };
     near || square < -FAR
 }
@@ -273,7 +296,7 @@ fn begun(gaps: &Gaps<'_>, length: f64, crossings: &[Placed], extremes: &[GapExtr
 fn short_pairs(gaps: &Gaps<'_>, length: f64, extremes: &[GapExtreme]) -> Vec<[(Placed, f64); 2]> {
     let mut short = Vec::new();
     for extreme in extremes {
-        let room = room(extreme, extremes, length);
+        let room = Room::of(gaps, extreme, extremes, length);
         for level in 0..gaps.values.contacts[extreme.contact].levels.len() {
             short.extend(short_pair(gaps, extreme, level, room));
         }
@@ -324,7 +347,7 @@ fn short_pair(
     gaps: &Gaps<'_>,
     extreme: &GapExtreme,
     level: usize,
-    room: f64,
+    room: Room,
 ) -> Option<[(Placed, f64); 2]> {
     let short = extreme.gap - gaps.values.contacts[extreme.contact].levels[level];
     if (short < 0.0) != extreme.maximum {

@@ -14,6 +14,7 @@ mod left_out;
 mod reference;
 mod requests;
 mod robust;
+mod rounds;
 mod serialised;
 mod shooting;
 mod start;
