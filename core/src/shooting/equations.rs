@@ -401,8 +401,8 @@ impl Equations {
         }
     }
 
-    /// Shows the orbit `u` to `see`, stretch by stretch. Says how far from the beginnings of segments those before them end, of velocities in
-    /// units of the frequency.
+    /// Shows the orbit `u` to `see`, stretch by stretch. Returns the largest distance of the end of a segment from the beginning of the next one,
+    /// velocities in units of the frequency.
     ///
     /// # Errors
     /// If the motion cannot be continued.

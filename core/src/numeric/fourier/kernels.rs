@@ -62,7 +62,7 @@ pub(crate) fn evaluate(
     }
 }
 
-/// The same for groups from this one on.
+/// The same for `G` groups, the first of which is `index`.
 #[inline(always)]
 fn evaluate_groups<const G: usize>(
     [a, b]: [&[f64]; 2],
@@ -114,7 +114,7 @@ pub(crate) fn project(
         *to = 2.0 * value;
     }
     s[..values.len()].fill(0.0);
-    // Several harmonics follow from phases that are loaded once.
+    // Of each group of phases several harmonics at once: loading and storing them takes as long as one.
     let (blocks, rest) = series[1..].as_chunks_mut::<{ 2 * BLOCK }>();
     for block in blocks {
         project_block::<BLOCK>([cosines, sines], [c, s], block);
@@ -124,7 +124,7 @@ pub(crate) fn project(
     }
 }
 
-/// Adds the next harmonics.
+/// Adds the next `H` harmonics, and turns `c` and `s` on by as many.
 #[inline(always)]
 fn project_block<const H: usize>(
     [cosines, sines]: [&[f64]; 2],
@@ -238,14 +238,15 @@ mod tests {
     proptest! {
         #[test]
         fn evaluates_and_projects_as_the_sums_do(
-            a in any_series(), taus in prop::collection::vec(0.0..6.3_f64, 16),
+            a in any_series(), taus in prop::collection::vec(0.0..6.3_f64, 3 * LANES), groups in 1_usize..4,
         ) {
+            let taus = &taus[..groups * LANES];
             let (sines, cosines): (Vec<f64>, Vec<f64>) = taus.iter().map(|t| t.sin_cos()).unzip();
             let mut b = a.clone();
             series::differentiate(&a, &mut b);
-            let (mut x, mut y) = ([0.0; 16], [0.0; 16]);
+            let (mut x, mut y) = (vec![0.0; taus.len()], vec![0.0; taus.len()]);
             evaluate([&a, &b], &cosines, &sines, &mut x, &mut y);
-            let (mut c, mut s) = ([0.0; 16], [0.0; 16]);
+            let (mut c, mut s) = (vec![0.0; taus.len()], vec![0.0; taus.len()]);
             let mut sums = vec![0.0; a.len()];
             project(&x, &cosines, &sines, &mut c, &mut s, &mut sums);
             let mut expected = vec![0.0; a.len()];

@@ -248,7 +248,7 @@ fn count(least: usize) -> usize {
     if between >= least { between } else { power }
 }
 
-/// How many times the steps would make of an error what is aimed at.
+/// By how much the number of steps is to be multiplied for the error to become what is aimed at.
 fn factor(error: f64, aim: f64) -> f64 {
     let factor = (error / (TARGET * aim)).powf(1.0 / 6.0);
     // Steps that are far too long leave nothing finite: an infinite factor.
@@ -259,8 +259,8 @@ fn factor(error: f64, aim: f64) -> f64 {
     }
 }
 
-/// Steps per period for the next orbit, after those that sufficed.
-fn after_success(density: f64, error: f64, aim: f64) -> f64 {
+/// Steps per period for the next orbit, after so many with this error.
+fn next_density(density: f64, error: f64, aim: f64) -> f64 {
     let next = density * factor(error, aim).clamp(0.5, 1.3);
     next.clamp(FIRST_DENSITY, LARGEST_DENSITY)
 }
@@ -293,7 +293,7 @@ impl Floquet for Monodromy {
                     self.density = if sight.is_some() {
                         density
                     } else {
-                        after_success(density, error.max(halved), aim)
+                        next_density(density, error.max(halved), aim)
                     };
                     return finer;
                 }
@@ -301,7 +301,7 @@ impl Floquet for Monodromy {
                 continue;
             }
             if density >= LARGEST_DENSITY || error <= aim {
-                self.density = after_success(density, error, aim);
+                self.density = next_density(density, error, aim);
                 return found;
             }
             density = (density * factor(error, aim).clamp(1.3, 4.0)).min(LARGEST_DENSITY);

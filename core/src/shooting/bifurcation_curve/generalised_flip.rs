@@ -14,15 +14,16 @@
 //! p_0 = p_0n + r / (1 - r) (p_0n - p_0f) + O(s^6),      r = (s_n / s_f)^4                                        (2)
 //! ```
 //!
-//! is Richardson's extrapolation. Where the points of the curve are is chance, and they may be as far from the end as each other. So both
-//! places are orbits computed inside of the step that passes the end, at an eighth and a quarter of it, on the longer side.
+//! is Richardson's extrapolation. The points of the curve itself may be at equal distances from the end, where (2) says nothing. So both places are
+//! orbits computed inside of the step that passes the end, at distances of an eighth and a quarter of the step from it, on the side where more of
+//! the step is. Where these cannot be computed, both ends of the step are taken.
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, section 9.3 (generalised flip: the curve of folds of twice the
 //! period, and its order of contact).
 
 use super::codimension_one::Curve;
 use super::special_monitor::{ROUNDING, SpecialMonitor};
-use super::special_search::{ReferenceCurve, Search, apart};
+use super::special_search::{self, Search, apart};
 use super::{Special, SpecialKind};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::inside;
@@ -37,6 +38,9 @@ const LARGEST: f64 = 1e6;
 
 /// How far from the end both places are, in parts of the step.
 const BESIDE: [f64; 2] = [0.125, 0.25];
+
+/// Ratio of the differences at both: of others one place is on another curve, as that of the doublings.
+const HALVED: std::ops::Range<f64> = 0.25..0.75;
 
 /// What orbits have that those of half the period have not is as good as nothing below this part of what it was.
 const NEARLY: f64 = 0.05;
@@ -143,38 +147,47 @@ impl<'a> SpecialMonitor<'_, 'a> {
 
     /// The degenerate doubling within a step. What the flow leaves in it shows by the equations of the error reference.
     pub(super) fn end(&mut self, search: &mut Search<'_, 'a>) {
-        let Some((values, error)) = degenerate(search) else {
+        let Some(found) = degenerate(search) else {
             return;
         };
-        let reference = ReferenceCurve::of(self.problem, search.curve);
+        let DegenerateEnd { values, error, .. } = found;
+        let reference = self.reference(search.curve).filter(|_| found.beside);
         let moved = reference.and_then(|mut reference| {
             let part = reference.part;
-            let (moved, _) = degenerate(&mut reference.search(search.step))?;
-            Some(part * apart(values, moved))
+            let moved = degenerate(&mut reference.search(search.step))?;
+            moved.beside.then(|| part * apart(values, moved.values))
         });
+        // As of other special points that the reference does not find.
+        let Step { before, next } = search.step;
+        let unknown = || 0.5 * apart(special_search::values(before), special_search::values(next));
         self.special.push(Special {
             kind: SpecialKind::Degenerate,
             values,
-            error: error + moved.unwrap_or(error),
+            error: error + moved.unwrap_or_else(unknown),
             after: self.points.len(),
         });
     }
 }
 
 /// What two places beside the end say of it, extrapolated by (2), and the error: by how much they differ, or what that changes if it is more.
-fn degenerate(search: &mut Search<'_, '_>) -> Option<([f64; 2], f64)> {
+fn degenerate(search: &mut Search<'_, '_>) -> Option<DegenerateEnd> {
     let Step { before, next } = search.step;
     let [a, b] = [before, next].map(|point| seen_from(search.curve, point));
     let (a, b) = (a?, b?);
-    let beside = places_beside(search, a.0 / (a.0 + b.0));
-    let (near, far) = beside.unwrap_or(if a.0 < b.0 { (a, b) } else { (b, a) });
+    let places = places_beside(search, a.0 / (a.0 + b.0));
+    let beside = places.is_some();
+    let (near, far) = places.unwrap_or(if a.0 < b.0 { (a, b) } else { (b, a) });
     let share = (near.0 / far.0).powi(4);
     let wanted = share / (1.0 - share);
     let factor = wanted.min(MOST);
     let values = [0, 1].map(|i| near.1[i] + factor * (near.1[i] - far.1[i]));
     let size = values[0].abs().max(values[1].abs());
     let error = wanted.clamp(1.0, LARGEST) * apart(near.1, far.1) + ROUNDING * size;
-    Some((values, error))
+    Some(DegenerateEnd {
+        values,
+        error,
+        beside,
+    })
 }
 
 /// The nearer and the farther place on the longer side of the end, which is at a part of a step.
@@ -192,7 +205,16 @@ fn places_beside(search: &mut Search<'_, '_>, end: f64) -> Option<(Seen, Seen)> 
         seen_from(search.curve, &point)
     };
     let (near, far) = (place(BESIDE[0])?, place(BESIDE[1])?);
-    (near.0 < far.0).then_some((near, far))
+    let halved = HALVED.contains(&(near.0 / far.0)) && near.1.iter().all(|x| x.is_finite());
+    halved.then_some((near, far))
+}
+
+/// What a step says of the end within it.
+struct DegenerateEnd {
+    values: [f64; 2],
+    error: f64,
+    /// By orbits beside it, not by the ends of the step.
+    beside: bool,
 }
 
 /// How large the difference is, and the parameters (1).

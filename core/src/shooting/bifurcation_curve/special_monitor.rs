@@ -45,7 +45,7 @@ pub(super) const ROUNDING: f64 = 1e-12;
 
 /// What is looked at along a curve.
 pub(super) struct SpecialMonitor<'p, 'a> {
-    pub(super) problem: &'p ShootingProblem,
+    problem: &'p ShootingProblem,
     plane: &'p Plane<'a>,
     options: NewtonOptions,
     pub(super) functions: TestFunctions<'p>,
@@ -316,7 +316,7 @@ impl<'p, 'a> SpecialMonitor<'p, 'a> {
     }
 
     /// The same curve by the equations of the error reference.
-    fn reference(&self, curve: &Curve<'a>) -> Option<ReferenceCurve<'a>> {
+    pub(super) fn reference(&self, curve: &Curve<'a>) -> Option<ReferenceCurve<'a>> {
         ReferenceCurve::of(self.problem, curve)
     }
 

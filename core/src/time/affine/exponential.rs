@@ -265,15 +265,17 @@ fn add_rows<const COUNT: usize>(order: usize, a: &[f64], b: &[f64], out: &mut [f
     for column in (0..whole).step_by(LANES) {
         add_block::<COUNT, LANES>(order, column, a, b, out);
     }
+    // Orders are odd: two for each coordinate and each wave, and the constant.
     match order - whole {
         1 => add_block::<COUNT, 1>(order, whole, a, b, out),
-        2 => add_block::<COUNT, 2>(order, whole, a, b, out),
         3 => add_block::<COUNT, 3>(order, whole, a, b, out),
-        4 => add_block::<COUNT, 4>(order, whole, a, b, out),
         5 => add_block::<COUNT, 5>(order, whole, a, b, out),
-        6 => add_block::<COUNT, 6>(order, whole, a, b, out),
         7 => add_block::<COUNT, 7>(order, whole, a, b, out),
-        _ => {}
+        _ => {
+            for column in whole..order {
+                add_block::<COUNT, 1>(order, column, a, b, out);
+            }
+        }
     }
 }
 
@@ -305,5 +307,34 @@ fn add_block<const COUNT: usize, const WIDTH: usize>(
     }
     for (out, sums) in out.chunks_exact_mut(order).zip(&sums) {
         out[column..][..WIDTH].copy_from_slice(sums);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::random::Random;
+
+    #[test]
+    fn products_are_those_of_three_loops() {
+        let mut random = Random::seeded(5);
+        for order in 1..=20 {
+            let mut matrix = || -> Vec<f64> {
+                (0..order * order)
+                    .map(|_| random.between(-1.0, 1.0))
+                    .collect()
+            };
+            let (a, b, mut out) = (matrix(), matrix(), matrix());
+            let mut expected = out.clone();
+            for i in 0..order {
+                for j in 0..order {
+                    for k in 0..order {
+                        expected[i * order + j] += a[i * order + k] * b[k * order + j];
+                    }
+                }
+            }
+            add_products(&a, &b, &mut out);
+            assert_eq!(out, expected, "{order}");
+        }
     }
 }
