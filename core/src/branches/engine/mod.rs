@@ -19,7 +19,6 @@
 //! 6. A step onto a branch of more regular orbits is made again up to shortly before the [joint] of both.
 //! 7. Where an extreme of a gap goes through a level, the orbit that [touches](grazing) it is located, and what test functions show there and at no end
 //!    of the step is recorded.
-//! 8. Where a fold is passed once more the branch has come [round], onto a closed curve that it did not begin on.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions); Keller
 //! (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (the bordered determinant).
@@ -37,7 +36,6 @@ mod joint;
 mod leap;
 mod meeting;
 mod narrow;
-mod round;
 mod seen;
 #[cfg(test)]
 mod tests;
@@ -373,11 +371,7 @@ impl Engine {
             }
         }
         let after = problem.points() - 1;
-        let known = problem.record().events.len();
         let turned = self.events(problem, newton, step);
-        if self.ended.is_none() && Self::comes_round(problem, known) {
-            self.ended = Some(Stop::Closed);
-        }
         if self.ended.is_none() {
             self.touches(problem, newton, step, turned, after);
             self.place_turns(problem);

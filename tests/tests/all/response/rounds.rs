@@ -1,23 +1,11 @@
 //! Walks that unknowns or steps lead astray.
 
 use hertzian::structure::{Contact, DMatrix, Structure};
-use hertzian::{ContactEquation, EventKind, FrequencyResponse, Shooting, Stop};
+use hertzian::{ContactEquation, EventKind, FrequencyResponse, Stop};
 
 hertzian::law! {
     /// Elastic stop
     pub Elastic(gap, k) { gap > 0 => k*gap, else => 0 }
-}
-
-hertzian::oscillator! {
-    /// Teeth with a backlash, and a transmission error in the gap.
-    Teeth(x) {
-        law mesh(gap) {
-            gap > 1          => gap - 1,
-            -1 <= gap <= 1   => 0,
-            gap < -1         => gap + 1,
-        }
-        ddot(x) + 0.104*dot(x) + mesh(x - 0.35*sin(omega*t)) = 0.19;
-    }
 }
 
 /// Four masses in a row of which three meet stops, each at one side.
@@ -60,27 +48,4 @@ fn branches_cross_where_a_multiplier_is_one() {
         let nearest = nearest.fold(f64::INFINITY, f64::min);
         assert!(nearest < 1e-3, "{event}: {nearest}");
     }
-}
-
-/// Beside a touch at 0.51 a step leads onto a closed curve between two folds. It is followed once.
-#[test]
-fn a_closed_curve_is_followed_once() {
-    let request = FrequencyResponse::of(&Teeth {}).by(Shooting::new());
-    let branch = request.from(2.3).to(0.4).max_points(400).run().unwrap();
-    let folds: Vec<_> = branch.folds().map(|fold| fold.point.clone()).collect();
-    for (place, fold) in folds.iter().enumerate() {
-        let same = folds[..place].iter().find(|other| {
-            (other.value - fold.value).abs() < 1e-9
-                && (other.peak_to_peak() - fold.peak_to_peak()).abs() < 1e-6
-        });
-        assert!(same.is_none(), "again at {}", fold.value);
-    }
-    assert!(branch.points.len() < 400, "{}", branch.stopped);
-    let last = branch.events.last().unwrap().after;
-    let verdicts = branch.points[last..].iter().map(|p| p.stability.verdict);
-    assert!(
-        verdicts
-            .clone()
-            .all(|verdict| Some(verdict) == verdicts.clone().next())
-    );
 }
