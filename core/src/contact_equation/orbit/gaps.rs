@@ -17,7 +17,8 @@
 //! 2 |g''/g'''| = d |g'(tau + d) - g'(tau - d)| / |g'(tau + d) - 2 g'(tau) + g'(tau - d)|                       (2)
 //! ```
 //!
-//! if nothing else bends it. Where there is none, since two are about to be born, the extreme moves as fast as if it were about to end there.
+//! if the third derivative stays as it is. Where there is no extreme at that place, one is about to be born there with another, and this one moves as fast as if it
+//! were about to end there.
 //!
 //! Source: Abramowitz and Stegun (1964), Handbook of Mathematical Functions, section 25.3 (numerical differentiation).
 

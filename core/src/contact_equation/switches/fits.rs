@@ -275,7 +275,8 @@ impl Run<'_> {
         let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
         let gaps = self.gaps(&at);
         let square = -above / gaps.bend(contact, phase);
-        square <= 0.0 && plan::is_near(square, room(&gaps), self.has_leap(contact, level))
+        let near = (-plan::NEAR..=0.0).contains(&square);
+        near && plan::is_near(square, room(&gaps), self.has_leap(contact, level))
     }
 
     /// Whether a pair of switches stands at an extreme: both at it, where it is short of the level, or else around it.

@@ -23,7 +23,7 @@ pub(super) const CLOSE: f64 = 0.1;
 pub(super) const LONG: f64 = 1.4;
 /// An extreme is watched from this `-H` on until it is more than the other one. With another extreme of its gap at the phase `d` beside it a gap
 /// falls by `g'' d^2 / 6` between both, an `H` of `d^2 / 3`, so that `-H` is looked at in parts of `d^2` too: none is watched where both meet.
-const NEAR: f64 = 0.4;
+pub(super) const NEAR: f64 = 0.4;
 const FAR: f64 = 1.0;
 const NEAR_ANOTHER: f64 = 0.75;
 const FAR_FOR_ANOTHER: f64 = 1.5;
@@ -39,8 +39,8 @@ const TOGETHER: f64 = 1e-6;
 pub(super) struct Room {
     /// From one that is there.
     seen: f64,
-    /// From one that there would be if it bent no more than it does here, too: an extreme that has none beside it moves as fast where its gap is
-    /// almost straight, and equations in its phase turn back where the branch does not.
+    /// The same, or from where the next one would be if the third derivative of the gap stayed as it is here, whichever is less: where a gap is almost
+    /// straight its extreme moves fast, and equations in its phase turn back where the branch does not.
     bent: f64,
 }
 
