@@ -42,7 +42,7 @@ fn branches_cross_where_a_multiplier_is_one() {
     let request = FrequencyResponse::of(&stops).by(ContactEquation::new());
     let branch = request.from(0.25).to(1.1).run().unwrap();
     assert_eq!(branch.stopped, Stop::ReachedEnd);
-    let beside = |value: f64| (value - 0.4274233).abs() < 1e-6;
+    let beside = |value: f64| (value - 0.427_423_3).abs() < 1e-6;
     assert!(!branch.turns.iter().any(|turn| beside(turn.value)));
     assert!(!branch.events.iter().any(|event| beside(event.point.value)));
     for event in branch.events(EventKind::BranchPoint) {
