@@ -208,7 +208,7 @@ fn search_along<P: AsProblem + ?Sized>(
     })
 }
 
-/// The point of the curve at a part of a step, as the arc length along the first tangent tells.
+/// The point of the curve at a part of a step, as its [`ArcLength`] tells.
 ///
 /// `None` if the correction fails.
 pub(crate) fn inside(
@@ -219,8 +219,8 @@ pub(crate) fn inside(
     options: NewtonOptions,
 ) -> Option<CurvePoint> {
     let Step { before: a, next: b } = step;
-    let arc = ArcLength::from(newton, a);
-    let length = arc.length(newton, a, b);
+    let arc = ArcLength::of(newton, step);
+    let length = arc.at(&b.u);
     let value = f64::NAN;
     let [from, to] = [(0.0, a), (length, b)].map(|(x, point)| Side {
         place: Place { x, value },
@@ -230,8 +230,9 @@ pub(crate) fn inside(
     arc.corrected(problem, newton, trial, part * length, options)
 }
 
-/// The parameter of the curve behind a point: the arc length along the tangent there.
-pub(super) struct ArcLength {
+/// The parameter of the curve behind a point: the arc length along the tangent there, or along the chord of a step where the tangent tells little
+/// of where that goes.
+pub(crate) struct ArcLength {
     border: Vec<f64>,
     /// The linear form at the point.
     origin: f64,
@@ -246,6 +247,28 @@ impl ArcLength {
             origin: dot(&border, &a.u),
             border,
             scale: a.scale,
+        }
+    }
+
+    /// That of a step.
+    pub(crate) fn of(newton: &Newton, step: Step<'_>) -> Self {
+        let (arc, chord) = (Self::from(newton, step.before), step.difference());
+        let scale = step.before.scale;
+        let (ahead, whole) = (arc.along(&chord), newton.norm().length(scale, &chord));
+        if ahead.abs() > SLANTED * whole || whole == 0.0 {
+            return arc;
+        }
+        let mut border = vec![0.0; chord.len()];
+        newton.norm().linear_form(scale, &chord, &mut border);
+        // It goes where the tangent goes.
+        let unit = whole.copysign(ahead);
+        for x in &mut border {
+            *x /= unit;
+        }
+        Self {
+            origin: dot(&border, &step.before.u),
+            border,
+            scale,
         }
     }
 
@@ -269,7 +292,7 @@ impl ArcLength {
     }
 
     /// The same, from the linear form.
-    pub(super) fn at(&self, u: &[f64]) -> f64 {
+    pub(crate) fn at(&self, u: &[f64]) -> f64 {
         dot(&self.border, u) - self.origin
     }
 

@@ -252,6 +252,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             self.refused += 1;
             return Read::Refused;
         }
+        if read.overlooks {
+            return Read::Lost;
+        }
         self.refused = 0;
         self.shortened = 0;
         self.displaced = 0;
@@ -306,6 +309,10 @@ impl BranchProblem for ContactBranch<'_, '_> {
     fn pairs(&mut self, at: &CurvePoint) -> Option<Vec<Complex<f64>>> {
         let watches = !self.watched.is_empty();
         watches.then(|| moduli::pairs(&self.tests(at).multipliers))
+    }
+
+    fn is_of_multipliers(&self, index: usize) -> bool {
+        !self.watched[index].bordered
     }
 
     fn vanishing(&self) -> f64 {

@@ -20,6 +20,8 @@ use crate::numeric::spectrum::{balance, eigenvalues};
 const ROUNDING: f64 = 1e-12;
 /// Eigenvectors that are dependent up to this part are not told apart.
 const DEPENDENT: f64 = 1e-8;
+/// Eigenvalues that differ by less than this part of a matrix are one, as those of a rotor that is equal in two planes.
+const EQUAL: f64 = 1e-12;
 
 /// (1)
 #[derive(Debug, Clone)]
@@ -129,11 +131,16 @@ impl Linear {
         let mut states = DMatrix::zeros(2 * n, 2 * n);
         let mut blocks = Vec::with_capacity(n);
         let mut alone: Option<(f64, DVector<f64>)> = None;
+        let mut known: Vec<(Complex<f64>, DVector<Complex<f64>>)> = Vec::new();
+        let equal = EQUAL * first_order.amax();
         for exponent in eigenvalues(&first_order) {
             if exponent.im < 0.0 {
                 continue;
             }
-            let vector = eigenvector(&first_order, exponent)?;
+            let others = known.iter().filter(|(of, _)| (of - exponent).norm() <= equal);
+            let others: Vec<_> = others.map(|(_, vector)| vector).collect();
+            let vector = eigenvector(&first_order, exponent, &others)?;
+            known.push((exponent, vector.clone()));
             let column = 2 * blocks.len();
             let (block, first, second) = if exponent.im > 0.0 {
                 let Complex { re, im } = exponent;
@@ -180,15 +187,24 @@ impl Linear {
     }
 }
 
-/// By inverse iteration (Golub and Van Loan (2013), Matrix Computations, section 7.6.1).
-fn eigenvector(matrix: &DMatrix<f64>, exponent: Complex<f64>) -> Option<DVector<Complex<f64>>> {
+/// By inverse iteration (Golub and Van Loan (2013), Matrix Computations, section 7.6.1), across the `others` of the same eigenvalue: what it leads to
+/// is in the space of all of them. `None` if there are no more.
+fn eigenvector(
+    matrix: &DMatrix<f64>,
+    exponent: Complex<f64>,
+    others: &[&DVector<Complex<f64>>],
+) -> Option<DVector<Complex<f64>>> {
     let n = matrix.nrows();
     let beside = exponent * (1.0 + 1e-13) + Complex::new(1e-14 * matrix.amax(), 0.0);
-    let shifted = matrix.map(|x| Complex::new(x, 0.0)) - DMatrix::identity(n, n) * beside;
-    let factors = shifted.lu();
-    let mut vector = DVector::from_fn(n, |i, _| Complex::new(1.0, 0.1 * (i as f64 + 1.0).sin()));
+    let complex = matrix.map(|x| Complex::new(x, 0.0));
+    let factors = (&complex - DMatrix::identity(n, n) * beside).lu();
+    let across = basis(others);
+    let turn = 1.0 + others.len() as f64;
+    let begin = |i: usize| Complex::new(1.0, 0.1 * ((i as f64 + 1.0) * turn).sin());
+    let mut vector = DVector::from_fn(n, |i, _| begin(i));
     for _ in 0..3 {
         vector = factors.solve(&vector)?;
+        take_away(&mut vector, &across);
         let largest = vector
             .iter()
             .fold(vector[0], |a, b| if b.norm() > a.norm() { *b } else { a });
@@ -198,7 +214,32 @@ fn eigenvector(matrix: &DMatrix<f64>, exponent: Complex<f64>) -> Option<DVector<
         // The largest entry is real then, and a real vector has no imaginary part but rounding.
         vector.iter_mut().for_each(|x| *x /= largest);
     }
-    Some(vector)
+    if others.is_empty() {
+        return Some(vector);
+    }
+    let left = complex * &vector - &vector * exponent;
+    let most = DEPENDENT * matrix.amax();
+    left.iter().all(|x| x.norm() <= most).then_some(vector)
+}
+
+/// An orthonormal basis of what vectors span (Golub and Van Loan (2013), section 5.2.8).
+fn basis(vectors: &[&DVector<Complex<f64>>]) -> Vec<DVector<Complex<f64>>> {
+    let mut basis: Vec<DVector<Complex<f64>>> = Vec::new();
+    for vector in vectors {
+        let mut vector = (*vector).clone();
+        take_away(&mut vector, &basis);
+        let length = vector.norm();
+        basis.push(vector.unscale(length));
+    }
+    basis
+}
+
+/// Takes from a vector what it has along others, which are orthonormal.
+fn take_away(vector: &mut DVector<Complex<f64>>, basis: &[DVector<Complex<f64>>]) {
+    for other in basis {
+        let part = other.dotc(vector);
+        vector.axpy(-part, other, Complex::new(1.0, 0.0));
+    }
 }
 
 #[cfg(test)]
@@ -250,6 +291,47 @@ mod tests {
             &of(&[1.0, 0.0, 0.0, 1.3]),
         );
         is_right(&of(&[2.0]), &of(&[0.0]), &of(&[0.0]));
+    }
+
+    /// What a rotor has that is equal in two planes: each eigenvalue twice, and three times, with damping that is not proportional, and real
+    /// ones where that is large.
+    #[test]
+    fn eigenvalues_may_be_repeated() {
+        for damping in [[0.02, 0.12], [9.0, 0.1]] {
+            for copies in [2, 3] {
+                let n = 2 * copies;
+                let block = |entries: [f64; 4]| {
+                    let entry = |i: usize, j: usize| {
+                        let same = i % copies == j % copies;
+                        let place = 2 * (i / copies) + j / copies;
+                        if same { entries[place] } else { 0.0 }
+                    };
+                    DMatrix::from_fn(n, n, entry)
+                };
+                let [a, b] = damping;
+                let m = block([1.0, 0.1, 0.1, 1.0]);
+                let c = block([a, 0.0, 0.0, b]);
+                let k = block([2.0, -1.0, -1.0, 2.0]);
+                is_right(&m, &c, &k);
+                // In directions that are not those of the coordinates.
+                let other = |i: usize, j: usize| {
+                    let own = if i == j { 2.0 } else { 0.0 };
+                    own + (1.7 * (i as f64) + 0.3).sin() * (j as f64 + 0.5).cos()
+                };
+                let turn = DMatrix::from_fn(n, n, other);
+                let [m, c, k] = [m, c, k].map(|of| turn.transpose() * of * &turn);
+                is_right(&m, &c, &k);
+            }
+        }
+    }
+
+    /// A mass with critical damping beside another one, which a damping that is not symmetric couples weakly: of a double eigenvalue there is
+    /// one eigenvector.
+    #[test]
+    fn what_has_too_few_eigenvectors_is_refused() {
+        let of = |entries: &[f64]| DMatrix::from_row_slice(2, 2, entries);
+        let (m, k) = (of(&[1.0, 0.0, 0.0, 1.0]), of(&[1.0, 0.0, 0.0, 2.0]));
+        assert!(Linear::new(&m, &of(&[2.0, 0.1, 0.0, 0.1]), &k).is_none());
     }
 
     /// In seconds a period may be short, and what damps it small beside its frequency: its digits are those of other units.

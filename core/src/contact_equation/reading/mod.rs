@@ -1,5 +1,6 @@
 //! What is read off an orbit, with its errors: one step from it to a solution with more nodes tells what the nodes leave out. How far two
-//! orbits are apart is measured in [`errors`], whether one comes back earlier than asked for in [`minimal_period`].
+//! orbits are apart is measured in [`errors`], whether one comes back earlier than asked for in [`minimal_period`], whether nodes see what a law
+//! does between them in [`overlooked`].
 //!
 //! With the equations `F = 0` of more nodes and their Jacobian `J` in the plane across the tangent, at unknowns `u` that are interpolated, what
 //! is stated of the error of a quantity `Q` is
@@ -19,6 +20,7 @@
 
 pub(super) mod errors;
 pub(super) mod minimal_period;
+mod overlooked;
 
 use nalgebra::DMatrix;
 
@@ -53,6 +55,8 @@ pub(super) struct ReadOrbit {
     pub(super) shift: f64,
     /// The map of that finer solution.
     pub(super) finer: Option<DMatrix<f64>>,
+    /// A law may change between two nodes unseen, so that the finer solution says nothing.
+    pub(super) overlooks: bool,
 }
 
 impl Run<'_> {
@@ -135,6 +139,13 @@ impl Run<'_> {
     fn read_with(&mut self, at: &CurvePoint, at_value: bool) -> Option<ReadOrbit> {
         let (mut point, map) = self.read_plainly(at)?;
         let stiffness = self.stiffness();
+        if self.overlooks() {
+            point.error = Some(f64::INFINITY);
+            return Some(ReadOrbit {
+                overlooks: true,
+                ..unknown(point, map)
+            });
+        }
         let Some(Finer { u: other, shift }) = self.corrected(at) else {
             point.error = Some(f64::INFINITY);
             return Some(unknown(point, map));
@@ -187,6 +198,7 @@ impl Run<'_> {
             map,
             shift,
             finer: finer_map,
+            overlooks: false,
         })
     }
 
@@ -203,6 +215,9 @@ impl Run<'_> {
         }
         let (mut point, map) = self.read_plainly(at)?;
         let (tails, stiffness) = (self.tails(&at.u), self.stiffness());
+        if self.overlooks() {
+            return self.read(at);
+        }
         let narrowest = self.narrowest(&at.u);
         let rise = self.rise(&point);
         let size = self.size(&point, 0.0);
@@ -235,6 +250,7 @@ impl Run<'_> {
             map,
             shift: f64::NAN,
             finer: None,
+            overlooks: false,
         })
     }
 
@@ -402,6 +418,7 @@ fn unknown(point: Point, map: Option<DMatrix<f64>>) -> ReadOrbit {
         map,
         shift: f64::INFINITY,
         finer: None,
+        overlooks: false,
     }
 }
 

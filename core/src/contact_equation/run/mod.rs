@@ -8,12 +8,14 @@ pub(super) mod images;
 use self::error_estimate::Screened;
 use super::equations::Equations;
 use super::equations::setting::Frame;
+use super::linear_part::values::Contact;
 use super::orbit::gaps::{At, Gaps};
 use super::orbit::motion::Motion;
 use super::problem::ContactProblem;
 use crate::branches::record::Record;
 use crate::branches::recurrence::Recurrence;
 use crate::continuation::statistics::Statistics;
+use crate::laws::generic::scales::Scales;
 
 /// Tangents in other unknowns are differences over so much of the largest entry.
 pub(super) const DIFFERENCE: f64 = 1e-5;
@@ -33,6 +35,8 @@ pub(super) struct Run<'r> {
     pub(super) statistics: Statistics,
     /// What the branch has met.
     pub(super) joined: Option<Recurrence>,
+    /// Where the law of each contact may be sharp.
+    pub(super) sharp: Vec<Option<Scales>>,
 }
 
 impl<'r> Run<'r> {
@@ -42,7 +46,11 @@ impl<'r> Run<'r> {
         resolution: usize,
         equations: Equations,
     ) -> Self {
+        let contacts = equations.values.contacts.iter();
+        let law = |contact: &Contact| equations.setting.system.law(contact.law);
+        let sharp = contacts.map(|contact| Scales::of(law(contact)));
         Self {
+            sharp: sharp.collect(),
             problem,
             frame,
             resolution,
