@@ -1,6 +1,7 @@
 //! Every example runs, draws a picture, prints what the README shows, and can be copied as it stands.
 
 mod integrated;
+mod linear;
 
 use std::fmt::Debug;
 use std::path::Path;
@@ -54,13 +55,18 @@ examples! {
     "../beam.rs" beam
     "../bifurcations.rs" bifurcations
     "../bolted_joint.rs" bolted_joint
+    "../casing.rs" casing
+    "../chain_of_beads.rs" chain_of_beads
     "../chaos.rs" chaos
     "../contact_resonance.rs" contact_resonance
     "../gear_mesh.rs" gear_mesh
     "../gear_pair.rs" gear_pair
+    "../gear_train.rs" gear_train
+    "../microscope.rs" microscope
     "../own_law.rs" own_law
     "../preloaded_stop.rs" preloaded_stop
     "../response.rs" response
+    "../rotor.rs" rotor
     "../two_masses.rs" two_masses
     "../variants.rs" variants
 }

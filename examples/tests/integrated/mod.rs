@@ -2,6 +2,7 @@
 
 mod approach;
 mod bolted_joint;
+mod chain_of_beads;
 mod gear_mesh;
 mod reference;
 
