@@ -74,16 +74,26 @@ pub(crate) fn orbit(
     guesses: Guesses<'_>,
     value: f64,
 ) -> Result<Point, Error> {
-    let (mut run, u) = begun(problem, guesses, value)?;
-    let newton = Newton::new(&run.equations);
-    let at = CurvePoint {
-        scale: solve::scale_at(&newton, &u),
-        tangent: vec![0.0; u.len() - 1].into_iter().chain([1.0]).collect(),
-        u,
-    };
-    let read = run.read(&at);
-    let read = read.ok_or(lost(value))?;
-    Ok(read.point)
+    let (mut run, mut u) = begun(problem, guesses, value)?;
+    loop {
+        let mut newton = Newton::new(&run.equations);
+        let at = CurvePoint {
+            scale: solve::scale_at(&newton, &u),
+            tangent: vec![0.0; u.len() - 1].into_iter().chain([1.0]).collect(),
+            u,
+        };
+        let read = run.read(&at).ok_or(lost(value))?;
+        let Some(needed) = read.overlooks else {
+            return Ok(read.point);
+        };
+        // Nodes that step over a narrow place of a law have not seen the orbit.
+        run.resolution = needed.ok_or(lost(value))?;
+        (run.equations, u) = run.replanned(&at.u).ok_or(lost(value))?;
+        newton = Newton::new(&run.equations);
+        solve::at_value(&mut run.equations, &mut newton, &mut u, AT_START)
+            .map_err(|reason| OrbitError::NoStart { value, reason })?;
+        run.clear_finer();
+    }
 }
 
 fn lost(value: f64) -> OrbitError {
@@ -173,6 +183,14 @@ fn ended(
     let Run {
         record, statistics, ..
     } = run;
+    if let (true, Stop::StepTooShort { reason, .. }) = (record.points.is_empty(), stopped) {
+        // The first orbit was solved for, and cannot be told to be one.
+        return Err(OrbitError::NoStart {
+            value: from,
+            reason,
+        }
+        .into());
+    }
     let asked = &problem.asked;
     let (system, varied) = (asked.system.as_ref(), asked.varied.clone());
     let branch = Branch {

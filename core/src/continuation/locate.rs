@@ -1,7 +1,7 @@
 //! Locating where a test function vanishes between two points of a curve.
 //!
-//! The curve between them is parametrised by the arc length `s` of the chord's first tangent; every value of the test
-//! function is taken at a corrected solution. Where to look next is what [`Bracket`] says.
+//! The curve between them is parametrised by the arc length `s` of the chord's first tangent, or of the chord where that tells more; every value of
+//! the test function is taken at a corrected solution. Where to look next is what [`Bracket`] says.
 
 use super::follow::{CurvePoint, Step};
 use super::problem::{AsProblem, Problem, Scale};
@@ -255,7 +255,9 @@ impl ArcLength {
         let (arc, chord) = (Self::from(newton, step.before), step.difference());
         let scale = step.before.scale;
         let (ahead, whole) = (arc.along(&chord), newton.norm().length(scale, &chord));
-        if ahead.abs() > SLANTED * whole || whole == 0.0 {
+        let behind = newton.norm().product(scale, &step.next.tangent, &chord);
+        // A chord that goes against the curve at one of its ends is none: a point may be known but for some of its unknowns.
+        if ahead.abs() > SLANTED * whole || ahead * behind <= 0.0 {
             return arc;
         }
         let mut border = vec![0.0; chord.len()];

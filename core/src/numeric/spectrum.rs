@@ -6,6 +6,10 @@ use nalgebra::{Complex, DMatrix, DVector, Schur};
 /// More iterations for eigenvalues are never made.
 pub(crate) const ITERATIONS: usize = 10_000;
 
+/// So many roundings are nothing below the diagonal of a Schur form: the first that leads to one, since entries of repeated eigenvalues need not come
+/// below one of them.
+const ROUNDINGS: [f64; 3] = [1.0, 8.0, 64.0];
+
 /// Eigenvalues, largest modulus first; of a pair of equal modulus the one with positive imaginary part first.
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     if matrix.iter().any(|x| !x.is_finite()) {
@@ -25,10 +29,12 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let mut matrix = matrix.clone();
     balance(&mut matrix);
     // With a bound on the iterations, which the plain call does not have.
-    let values: Vec<_> = Schur::try_new(matrix, f64::EPSILON, ITERATIONS)
-        .map(|schur| schur.complex_eigenvalues().iter().copied().collect())
-        .unwrap_or_default();
-    sort(values)
+    let schur = ROUNDINGS.into_iter().find_map(|roundings| {
+        let small = roundings * f64::EPSILON;
+        Schur::try_new(matrix.clone(), small, ITERATIONS)
+    });
+    let values = schur.map(|schur| schur.complex_eigenvalues().iter().copied().collect());
+    sort(values.unwrap_or_default())
 }
 
 /// Makes rows and columns of the same number alike in size, by powers of two, as unlike as the units of states are: `A` becomes `D^-1 A D`,

@@ -188,6 +188,7 @@ impl Engine {
             self.seen.clear();
             self.gaps.clear();
             self.touched.clear();
+            self.crossed = None;
             self.refused = true;
         }
         tried.end();

@@ -56,8 +56,8 @@ struct TouchSearch<'s> {
 /// An orbit that touches a level.
 struct Touching {
     point: CurvePoint,
-    /// The end of the step where the level is crossed, if multipliers bend at the touch: the first or the second.
-    crossed: Option<usize>,
+    /// The end of the part of the step where the level is crossed, if multipliers bend at the touch.
+    crossed: Option<CurvePoint>,
 }
 
 /// A point with the extremes of its gaps.
@@ -129,6 +129,9 @@ impl Engine {
             let ends = [a.clone(), b.clone()];
             let inner = self.farther_behind(problem, newton, &touch, [a, b]);
             self.record_between(problem, newton, ends, inner, after);
+            if self.ended.is_some() {
+                return;
+            }
         }
         self.beside_touches(problem, newton, orbits, 1, after);
     }
@@ -177,30 +180,40 @@ impl Engine {
             let part = along.at(&orbit.point.u) / whole;
             part > AT_END && part < 1.0 - AT_END
         };
-        let orbits: Vec<Touching> = orbits.into_iter().filter(within).collect();
         let (mut inner, mut earlier) = (Vec::new(), Vec::new());
-        for Touching { mut point, crossed } in orbits {
+        let mut farthest = f64::NEG_INFINITY;
+        for touching in orbits {
+            let inside = within(&touching);
+            let Touching { mut point, crossed } = touching;
             // It was come to from either side.
             let norm = newton.norm();
             if norm.product(begin.scale, &point.tangent, &begin.tangent) < 0.0 {
                 point.tangent.iter_mut().for_each(|t| *t = -*t);
             }
             let touch = Seen::at(problem, &point, ends[0].falls);
-            if let Some(end) = crossed {
-                inner.extend(self.behind_touch(problem, newton, &touch, &ends[end]));
+            let crosses = |end: usize| crossed.as_ref().is_some_and(|at| at.u == ends[end].point.u);
+            let other = before.checked_sub(1).map(|place| &self.seen[place]);
+            if let Some(other) = other.filter(|_| crosses(0)) {
+                earlier.extend(self.farther_behind(problem, newton, &touch, [&ends[0], other]));
             }
-            match (crossed, before.checked_sub(1).map(|place| &self.seen[place])) {
-                (Some(0), Some(other)) => {
-                    earlier.extend(self.farther_behind(problem, newton, &touch, [&ends[0], other]));
-                }
-                (Some(1), _) => self.crossed = Some(touch.clone()),
-                _ => {}
+            if crosses(1) && along.at(&touch.point.u) / whole > farthest {
+                farthest = along.at(&touch.point.u) / whole;
+                self.crossed = Some(touch.clone());
             }
-            inner.push(touch);
+            if let Some(end) = crossed.filter(|_| inside) {
+                let end = Seen::at(problem, &end, ends[0].falls);
+                inner.extend(self.behind_touch(problem, newton, &touch, &end));
+            }
+            if inside {
+                inner.push(touch);
+            }
         }
         if let Some(other) = before.checked_sub(1).filter(|_| !earlier.is_empty()) {
             let step = [self.seen[other].clone(), ends[0].clone()];
             self.record_between(problem, newton, step, earlier, after - 1);
+            if self.ended.is_some() {
+                return;
+            }
         }
         self.record_between(problem, newton, ends, inner, after);
     }
@@ -452,9 +465,14 @@ impl TouchSearch<'_> {
         self.found.push(value);
         if extreme.bend != Bend::Corner {
             let bends = extreme.bend != Bend::Smooth;
+            let crossed = if found[0].before.is_clear() {
+                step.next
+            } else {
+                step.before
+            };
             self.orbits.push(Touching {
                 point: located.point.clone(),
-                crossed: bends.then_some(usize::from(found[0].before.is_clear())),
+                crossed: bends.then(|| crossed.clone()),
             });
         }
         let touch = Touch {

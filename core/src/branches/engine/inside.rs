@@ -479,8 +479,10 @@ pub(super) fn step_between([a, b]: [&Seen; 2]) -> Step<'_> {
 
 /// Puts an orbit to its place among the parts of a step.
 fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
-    let along = ArcLength::of(newton, step_between([&parts[0], &parts[parts.len() - 1]]));
-    let along = |seen: &Seen| along.at(&seen.point.u);
+    let last = &parts[parts.len() - 1];
+    let along = ArcLength::of(newton, step_between([&parts[0], last]));
+    let whole = along.at(&last.point.u);
+    let along = |seen: &Seen| along.at(&seen.point.u) / whole;
     let place = along(&found);
     let next = parts.iter().position(|part| along(part) > place);
     parts.insert(next.unwrap_or(parts.len() - 1).max(1), found);
@@ -594,16 +596,16 @@ mod tests {
         Err(LOOKS)
     }
 
-    /// `f` falls with one slope to a touch and is nearly flat behind it: of three points, the second difference is a third of what it is at
-    /// the touch.
+    /// Twice the period of a gear: the function falls steeply to a touch just before the last point, and rises from there. A second difference
+    /// of three points is less than a third of what there is at the touch.
     #[test]
     fn a_kink_hides_no_pair_of_zeros() {
-        let kink = |s: f64| (1.0 - 1.4 * s).max(-0.02 + 0.02 * (s - 0.7));
-        let shallow = |s: f64| kink(s) + 0.06 * s * s * s * s;
-        let found = below(shallow, [-1.0, 0.0, 1.0]).unwrap();
-        assert!((0.7..1.0).contains(&found), "{found}");
-        let clear = |s: f64| kink(s) + 0.1;
-        assert!(below(clear, [-1.0, 0.0, 1.0]).is_err());
+        let kink =
+            |s: f64| (1.15 - 1.6 * s).max(0.17 + 1.1 * (s - 1.0)) + 0.4 * (s * s - s).max(0.0);
+        let points = [-1.2, 0.0, 1.0];
+        let found = below(kink, points).unwrap();
+        assert!((0.7..0.9).contains(&found), "{found}");
+        assert!(below(|s| kink(s) + 0.4, points).is_err());
     }
 
     /// What halves from point to point leads to zero at the next one, and no further.

@@ -197,7 +197,6 @@ fn go_on(
                 let before = halted.previous.as_ref().filter(|_| problem.seeks_touches());
                 let gaps = before.and_then(|before| engine.gaps_at(problem, before));
                 problem.remap(&mut resized);
-                engine.crossed = None;
                 engine.keep_gaps(gaps, resized.previous.as_ref());
                 last = Some(halted);
                 Start::At(resized)

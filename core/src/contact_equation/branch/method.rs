@@ -245,14 +245,17 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
 
     /// What is done with an orbit that was read, by equations that fit it.
     fn decide(&mut self, at: &CurvePoint, read: ReadOrbit, fits: Fits, stuck: bool) -> Read {
-        let wanted = self.wanted(&read.point);
+        let wanted = match read.overlooks {
+            Some(needed) => needed.unwrap_or(self.run.resolution),
+            None => self.wanted(&read.point),
+        };
         let coarse = wanted > self.run.resolution;
         let again = !stuck && self.refused < REFUSALS;
         if coarse && again && self.prepare(&at.u, wanted) {
             self.refused += 1;
             return Read::Refused;
         }
-        if read.overlooks {
+        if read.overlooks.is_some() {
             return Read::Lost;
         }
         self.refused = 0;

@@ -20,8 +20,11 @@ use crate::numeric::spectrum::{balance, eigenvalues};
 const ROUNDING: f64 = 1e-12;
 /// Eigenvectors that are dependent up to this part are not told apart.
 const DEPENDENT: f64 = 1e-8;
-/// Eigenvalues that differ by less than this part of a matrix are one, as those of a rotor that is equal in two planes.
-const EQUAL: f64 = 1e-12;
+/// Parts of a matrix below which eigenvalues are one, as those of a rotor that is equal in two planes: the first at which there are as many eigenvectors
+/// as there should be, since rounding moves eigenvalues by a few units of the largest.
+const EQUAL: [f64; 4] = [0.0, 1e-14, 1e-13, 1e-12];
+/// What is left of the equation of an eigenvector that was found beside others, at most, as a part of the matrix.
+const LEFT: f64 = 1e-11;
 
 /// (1)
 #[derive(Debug, Clone)]
@@ -128,43 +131,13 @@ impl Linear {
         first_order.view_mut((n, 0), (n, n)).copy_from(&-stiffness);
         first_order.view_mut((n, n), (n, n)).copy_from(&-damping);
         let scales = balance(&mut first_order);
-        let mut states = DMatrix::zeros(2 * n, 2 * n);
-        let mut blocks = Vec::with_capacity(n);
-        let mut alone: Option<(f64, DVector<f64>)> = None;
-        let mut known: Vec<(Complex<f64>, DVector<Complex<f64>>)> = Vec::new();
-        let equal = EQUAL * first_order.amax();
-        for exponent in eigenvalues(&first_order) {
-            if exponent.im < 0.0 {
-                continue;
-            }
-            let others = known.iter().filter(|(of, _)| (of - exponent).norm() <= equal);
-            let others: Vec<_> = others.map(|(_, vector)| vector).collect();
-            let vector = eigenvector(&first_order, exponent, &others)?;
-            known.push((exponent, vector.clone()));
-            let column = 2 * blocks.len();
-            let (block, first, second) = if exponent.im > 0.0 {
-                let Complex { re, im } = exponent;
-                let square: Square = [[re, im], [-im, re]];
-                (square, vector.map(|z| z.re), vector.map(|z| z.im))
-            } else if let Some((other, of_other)) = alone.take() {
-                let square: Square = [[other, 0.0], [0.0, exponent.re]];
-                (square, of_other, vector.map(|z| z.re))
-            } else {
-                alone = Some((exponent.re, vector.map(|z| z.re)));
-                continue;
-            };
-            blocks.push(Block::new(block));
-            states.set_column(column, &first);
-            states.set_column(column + 1, &second);
-        }
-        if blocks.len() != n {
-            return None;
-        }
-        let mut inverse = states.clone().try_inverse()?;
-        let dependence = inverse.amax() * states.amax();
-        if dependence > 1.0 / DEPENDENT {
-            return None;
-        }
+        let found = EQUAL.into_iter().find_map(|equal| {
+            let (blocks, states) = pairs(&first_order, equal)?;
+            let inverse = states.clone().try_inverse()?;
+            let dependence = inverse.amax() * states.amax();
+            (dependence <= 1.0 / DEPENDENT).then_some((blocks, states, inverse, dependence))
+        });
+        let (blocks, mut states, mut inverse, dependence) = found?;
         for (state, scale) in scales.iter().enumerate() {
             states.row_mut(state).scale_mut(*scale);
             inverse.column_mut(state).unscale_mut(*scale);
@@ -185,6 +158,61 @@ impl Linear {
         let product = &self.inverse * DVector::from_column_slice(physical);
         product.as_slice().to_vec()
     }
+}
+
+/// Pairs of states of a first-order system, and `T` of them column by column, where eigenvalues that differ by less than a part of the matrix
+/// are one. `None` if there are too few eigenvectors.
+fn pairs(matrix: &DMatrix<f64>, equal: f64) -> Option<(Vec<Block>, DMatrix<f64>)> {
+    let order = matrix.nrows();
+    let mut states = DMatrix::zeros(order, order);
+    let mut blocks = Vec::with_capacity(order / 2);
+    let mut alone: Option<(f64, DVector<f64>)> = None;
+    let mut known: Vec<(Complex<f64>, DVector<Complex<f64>>)> = Vec::new();
+    for exponent in grouped(&eigenvalues(matrix), equal * matrix.amax()) {
+        if exponent.im < 0.0 {
+            continue;
+        }
+        let others = known.iter().filter(|(of, _)| *of == exponent);
+        let others: Vec<_> = others.map(|(_, vector)| vector).collect();
+        let vector = eigenvector(matrix, exponent, &others)?;
+        known.push((exponent, vector.clone()));
+        let (block, first, second) = if exponent.im > 0.0 {
+            let Complex { re, im } = exponent;
+            let square: Square = [[re, im], [-im, re]];
+            (square, vector.map(|z| z.re), vector.map(|z| z.im))
+        } else if let Some((other, of_other)) = alone.take() {
+            let square: Square = [[other, 0.0], [0.0, exponent.re]];
+            (square, of_other, vector.map(|z| z.re))
+        } else {
+            alone = Some((exponent.re, vector.map(|z| z.re)));
+            continue;
+        };
+        let column = 2 * blocks.len();
+        blocks.push(Block::new(block));
+        states.set_column(column, &first);
+        states.set_column(column + 1, &second);
+    }
+    (2 * blocks.len() == order).then_some((blocks, states))
+}
+
+/// Eigenvalues of which those are the same that are as near to each other: their mean, which rounding does not move as it does each. One that is as
+/// near to its conjugate is real.
+fn grouped(eigenvalues: &[Complex<f64>], near: f64) -> Vec<Complex<f64>> {
+    let real = |z: &Complex<f64>| Complex::new(z.re, if z.im.abs() <= near { 0.0 } else { z.im });
+    let mut found: Vec<Complex<f64>> = eigenvalues.iter().map(real).collect();
+    let mut done = vec![false; found.len()];
+    for first in 0..found.len() {
+        let same = |place: &usize| !done[*place] && (found[*place] - found[first]).norm() <= near;
+        let group: Vec<usize> = (first..found.len()).filter(same).collect();
+        if group.len() > 1 && !done[first] {
+            let sum: Complex<f64> = group.iter().map(|place| found[*place]).sum();
+            let mean = sum / group.len() as f64;
+            for place in group {
+                (found[place], done[place]) = (mean, true);
+            }
+        }
+    }
+    found
 }
 
 /// By inverse iteration (Golub and Van Loan (2013), Matrix Computations, section 7.6.1), across the `others` of the same eigenvalue: what it leads to
@@ -218,7 +246,7 @@ fn eigenvector(
         return Some(vector);
     }
     let left = complex * &vector - &vector * exponent;
-    let most = DEPENDENT * matrix.amax();
+    let most = LEFT * matrix.amax();
     left.iter().all(|x| x.norm() <= most).then_some(vector)
 }
 

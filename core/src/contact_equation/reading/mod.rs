@@ -1,6 +1,6 @@
 //! What is read off an orbit, with its errors: one step from it to a solution with more nodes tells what the nodes leave out. How far two
-//! orbits are apart is measured in [`errors`], whether one comes back earlier than asked for in [`minimal_period`], whether nodes see what a law
-//! does between them in [`overlooked`].
+//! orbits are apart is measured in [`errors`], whether one comes back earlier than asked for in [`minimal_period`], whether nodes see narrow
+//! places of a law in [`overlooked`].
 //!
 //! With the equations `F = 0` of more nodes and their Jacobian `J` in the plane across the tangent, at unknowns `u` that are interpolated, what
 //! is stated of the error of a quantity `Q` is
@@ -20,7 +20,7 @@
 
 pub(super) mod errors;
 pub(super) mod minimal_period;
-mod overlooked;
+pub(super) mod overlooked;
 
 use nalgebra::DMatrix;
 
@@ -55,8 +55,8 @@ pub(super) struct ReadOrbit {
     pub(super) shift: f64,
     /// The map of that finer solution.
     pub(super) finer: Option<DMatrix<f64>>,
-    /// A law may change between two nodes unseen, so that the finer solution says nothing.
-    pub(super) overlooks: bool,
+    /// Nodes step over a narrow place of a law, so that the finer solution says nothing: the resolution that does not, if there is one.
+    pub(super) overlooks: Option<Option<usize>>,
 }
 
 impl Run<'_> {
@@ -128,24 +128,33 @@ impl Run<'_> {
 
     /// Reads an orbit with everything that is asked for, its errors as a finer solution shows them: those at its value.
     pub(super) fn read(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
-        self.read_with(at, true)
+        let (mut point, map) = self.read_plainly(at)?;
+        let overlooks = self.overlooks();
+        if overlooks.is_none() {
+            return self.read_finer(at, point, map, true);
+        }
+        point.error = Some(f64::INFINITY);
+        Some(ReadOrbit {
+            overlooks,
+            ..unknown(point, map)
+        })
     }
 
     /// The same of an orbit at an event, whose value has an error of its own: multipliers have those of the orbit that it is of.
     pub(super) fn read_event(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
-        self.read_with(at, false)
+        let (point, map) = self.read_plainly(at)?;
+        self.read_finer(at, point, map, false)
     }
 
-    fn read_with(&mut self, at: &CurvePoint, at_value: bool) -> Option<ReadOrbit> {
-        let (mut point, map) = self.read_plainly(at)?;
+    /// What a finer solution shows of the orbit of the last pass.
+    fn read_finer(
+        &mut self,
+        at: &CurvePoint,
+        mut point: Point,
+        map: Option<DMatrix<f64>>,
+        at_value: bool,
+    ) -> Option<ReadOrbit> {
         let stiffness = self.stiffness();
-        if self.overlooks() {
-            point.error = Some(f64::INFINITY);
-            return Some(ReadOrbit {
-                overlooks: true,
-                ..unknown(point, map)
-            });
-        }
         let Some(Finer { u: other, shift }) = self.corrected(at) else {
             point.error = Some(f64::INFINITY);
             return Some(unknown(point, map));
@@ -198,7 +207,7 @@ impl Run<'_> {
             map,
             shift,
             finer: finer_map,
-            overlooks: false,
+            overlooks: None,
         })
     }
 
@@ -215,7 +224,7 @@ impl Run<'_> {
         }
         let (mut point, map) = self.read_plainly(at)?;
         let (tails, stiffness) = (self.tails(&at.u), self.stiffness());
-        if self.overlooks() {
+        if self.overlooks().is_some() {
             return self.read(at);
         }
         let narrowest = self.narrowest(&at.u);
@@ -250,7 +259,7 @@ impl Run<'_> {
             map,
             shift: f64::NAN,
             finer: None,
-            overlooks: false,
+            overlooks: None,
         })
     }
 
@@ -418,7 +427,7 @@ fn unknown(point: Point, map: Option<DMatrix<f64>>) -> ReadOrbit {
         map,
         shift: f64::INFINITY,
         finer: None,
-        overlooks: false,
+        overlooks: None,
     }
 }
 

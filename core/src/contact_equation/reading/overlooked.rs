@@ -1,54 +1,112 @@
-//! Whether the nodes see what a law does between them.
+//! Whether nodes step over a narrow place of a law.
 //!
 //! A finer solution tells the error only if its nodes see what those of the orbit do not. A bump of the force that a gap passes between two nodes
-//! of both leaves no trace in either. The [scales](crate::laws::generic::scales) of a law tell where it may change, from gaps and rates at
-//! successive nodes, as they do for an integrator and for the balance.
+//! of both leaves no trace in either. Where a law has such places, and how narrow they are, its data tell: see
+//! [narrow](crate::laws::generic::narrow). With gaps `g_i` at successive nodes, one at `g` with the width `w` is seen if
 //!
-//! Source: that of [scales](crate::laws::generic::scales).
+//! ```text
+//! g_i <= g <= g_(i + 1)    only where    g_(i + 1) - g_i <= 2 w                                                (1)
+//! ```
+//!
+//! Source: Shannon (1949), Communication in the presence of noise (what samples that are too far apart do not tell).
 
 use crate::contact_equation::orbit::motion::Motion;
+use crate::contact_equation::problem::RESOLUTIONS;
 use crate::contact_equation::run::Run;
-use crate::laws::generic::scales::{Scales, Sight};
+use crate::laws::generic::narrow::Narrow;
+use crate::laws::generic::scales::Scales;
 
-/// Largest change from node to node, in the units of [`Scales`], with which finer nodes see what these do not.
-const SEEN: f64 = 1.5;
+/// Widths that nodes may be apart, by (1).
+const SEEN: f64 = 2.0;
+/// Narrow places are looked for in the range of a gap, and so many times its length beyond it, so that they need not be at every orbit.
+const BEYOND: f64 = 0.5;
 
-impl Run<'_> {
-    /// Whether a law may change between two nodes of the last pass unseen.
-    pub(super) fn overlooks(&mut self) -> bool {
-        let mut sharp = std::mem::take(&mut self.sharp);
-        let found = sharp.iter().any(Option::is_some) && self.overlooked_by(&mut sharp);
-        self.sharp = sharp;
-        found
+/// Where the law of a contact has narrow places.
+pub(in crate::contact_equation) struct Sharp {
+    scales: Scales,
+    /// The range of gaps they were looked for in, with these arguments.
+    looked: Option<([f64; 2], Vec<f64>)>,
+    places: Vec<Narrow>,
+}
+
+impl Sharp {
+    /// That of a law, if it may have some.
+    pub(in crate::contact_equation) fn of(scales: Scales) -> Self {
+        Self {
+            scales,
+            looked: None,
+            places: Vec::new(),
+        }
     }
 
-    fn overlooked_by(&self, sharp: &mut [Option<Scales>]) -> bool {
+    /// Those in the range of some gaps.
+    fn places(&mut self, [arguments, levels]: [&[f64]; 2], gaps: &[f64]) -> &[Narrow] {
+        let low = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = gaps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let known = self.looked.as_ref().is_some_and(|([from, to], of)| {
+            *from <= low && high <= *to && of == arguments && to - from <= 4.0 * (high - low)
+        });
+        if !known {
+            self.places.clear();
+            self.scales.set(arguments, levels);
+            let beyond = BEYOND * (high - low);
+            let range = [low - beyond, high + beyond];
+            if self.scales.may_be_narrow() {
+                self.scales.narrow(range, &mut self.places);
+            }
+            self.looked = Some((range, arguments.to_vec()));
+        }
+        &self.places
+    }
+}
+
+impl Run<'_> {
+    /// Whether nodes of the last pass step over a narrow place of a law, and the first resolution that does not, if there is one.
+    pub(super) fn overlooks(&mut self) -> Option<Option<usize>> {
+        let mut sharp = std::mem::take(&mut self.sharp);
+        let widest = self.widest(&mut sharp);
+        self.sharp = sharp;
+        if widest <= SEEN {
+            return None;
+        }
+        let nodes = |of: usize| (RESOLUTIONS[of].nodes * RESOLUTIONS[of].panels) as f64;
+        let needed = nodes(self.resolution) * widest / SEEN;
+        let mut finer = self.resolution + 1..RESOLUTIONS.len();
+        Some(finer.find(|of| nodes(*of) >= needed))
+    }
+
+    /// How far nodes are apart about a narrow place, in widths, at most.
+    fn widest(&self, sharp: &mut [Option<Sharp>]) -> f64 {
+        let mut widest = 0.0_f64;
+        if sharp.iter().all(Option::is_none) {
+            return widest;
+        }
         let motion = Motion::of(&self.equations);
-        let base = self.equations.values.base;
-        let (mut gaps, mut rates) = (Vec::new(), Vec::new());
+        let mut gaps = Vec::new();
         for (index, interval) in self.equations.skeleton.intervals.iter().enumerate() {
             let [from, to] = motion.phases(index);
-            for active in &interval.active {
-                let Some(scales) = &mut sharp[active.contact] else {
+            for active in interval.active.iter().filter(|_| to > from) {
+                let Some(sharp) = &mut sharp[active.contact] else {
                     continue;
                 };
                 let of = &self.equations.values.contacts[active.contact];
-                scales.set(&of.arguments, &of.levels);
-                if !scales.any(active.piece) || to <= from {
-                    continue;
-                }
                 gaps.clear();
-                rates.clear();
-                for psi in &interval.nodes.targets {
-                    let [gap, slope] = motion.gap(active.contact, index, from + psi * (to - from));
-                    gaps.push(gap);
-                    rates.push(slope * base);
-                }
-                if scales.look(active.piece, &gaps, &rates, SEEN) == Sight::Missed {
-                    return true;
+                let nodes = &interval.nodes.targets[..interval.nodes.count()];
+                gaps.extend(nodes.iter().map(|psi| {
+                    let phase = from + psi * (to - from);
+                    motion.gap(active.contact, index, phase)[0]
+                }));
+                let places = sharp.places([&of.arguments, &of.levels], &gaps);
+                for pair in gaps.windows(2) {
+                    let (low, high) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+                    let between = places
+                        .iter()
+                        .filter(|place| low <= place.at && place.at <= high);
+                    widest =
+                        between.fold(widest, |most, place| most.max((high - low) / place.width));
                 }
             }
         }
-        false
+        widest
     }
 }

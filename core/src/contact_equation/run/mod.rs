@@ -12,6 +12,7 @@ use super::linear_part::values::Contact;
 use super::orbit::gaps::{At, Gaps};
 use super::orbit::motion::Motion;
 use super::problem::ContactProblem;
+use super::reading::overlooked::Sharp;
 use crate::branches::record::Record;
 use crate::branches::recurrence::Recurrence;
 use crate::continuation::statistics::Statistics;
@@ -35,8 +36,8 @@ pub(super) struct Run<'r> {
     pub(super) statistics: Statistics,
     /// What the branch has met.
     pub(super) joined: Option<Recurrence>,
-    /// Where the law of each contact may be sharp.
-    pub(super) sharp: Vec<Option<Scales>>,
+    /// Where the law of each contact may have narrow places.
+    pub(super) sharp: Vec<Option<Sharp>>,
 }
 
 impl<'r> Run<'r> {
@@ -48,7 +49,7 @@ impl<'r> Run<'r> {
     ) -> Self {
         let contacts = equations.values.contacts.iter();
         let law = |contact: &Contact| equations.setting.system.law(contact.law);
-        let sharp = contacts.map(|contact| Scales::of(law(contact)));
+        let sharp = contacts.map(|contact| Scales::of(law(contact)).map(Sharp::of));
         Self {
             sharp: sharp.collect(),
             problem,
