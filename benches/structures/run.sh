@@ -37,9 +37,12 @@ for case in "${cases[@]}"; do
     for verdicts in without with; do
         : >"$folder/lines"
         for ((run = 0; run < repetitions; run++)); do
-            if ! timeout $((2 * seconds)) "${pinned[@]}" "$program" "$kind" "$size" "$verdicts" "$seconds" >>"$folder/lines" 2>"$folder/why"; then
+            if ! (
+                ulimit -t $((2 * seconds))
+                exec "${pinned[@]}" "$program" "$kind" "$size" "$verdicts" "$seconds"
+            ) >>"$folder/lines" 2>"$folder/why"; then
                 why=$(tail -n 1 "$folder/why")
-                printf '%s\t%s\t%s\t%s\n' "$kind" "${size##*/}" "$verdicts" "no end after $((2 * seconds)) s: ${why:-no point}"
+                printf '%s\t%s\t%s\t%s\n' "$kind" "${size##*/}" "$verdicts" "no end after $((2 * seconds)) s of the processor: ${why:-no point}"
                 continue 2
             fi
         done
