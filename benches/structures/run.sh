@@ -25,7 +25,7 @@ for modes in 2 20 200 2000; do
 done
 cases+=('chain-one 16' 'rotor 0' 'chain 64')
 if python3 "$here/../../examples/structures/plate.py" 400 125 "$folder/solid"; then
-    cases+=("file $folder/solid/plate.toml:700:1400" "file $folder/solid/plate.toml:700:1400:14")
+    cases+=("file $folder/solid/plate.toml:700:1400" "file $folder/solid/plate.toml:700:1400:16")
 fi
 if [[ -n ${CASES:-} ]]; then
     mapfile -t cases < <(printf '%s\n' "${cases[@]}" | grep -E "$CASES")

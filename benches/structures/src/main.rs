@@ -68,7 +68,7 @@ impl Case {
         })
     }
 
-    /// FILE:FROM:TO or FILE:FROM:TO:MODES
+    /// `FILE:FROM:TO` or `FILE:FROM:TO:MODES`
     fn of_file(described: &str) -> Result<Self, Box<dyn Error>> {
         let mut parts = described.split(':');
         let mut part = || parts.next().ok_or("FILE:FROM:TO");
