@@ -43,6 +43,8 @@ pub(in crate::contact_equation) struct Block {
     pub(in crate::contact_equation) deviation: Square,
     /// `d`
     square: f64,
+    /// `sqrt(|d|)`
+    root: f64,
 }
 
 /// `c` and `k` of (1).
@@ -95,6 +97,7 @@ impl Block {
             mean,
             deviation,
             square,
+            root: square.abs().sqrt(),
         }
     }
 
@@ -105,7 +108,7 @@ impl Block {
 
     /// Size of the faster exponent.
     pub(in crate::contact_equation) fn rate(&self) -> f64 {
-        self.mean.abs() + self.square.abs().sqrt()
+        self.mean.abs() + self.root
     }
 
     /// The faster of what decays, whether it oscillates or not.
@@ -137,7 +140,7 @@ impl Block {
             series(x, s)
         } else if x > 0.0 {
             // Both exponents at once, so that no factor overflows where they decay.
-            let root = self.square.sqrt();
+            let root = self.root;
             let (plus, minus) = (
                 ((self.mean + root) * s).exp(),
                 ((self.mean - root) * s).exp(),
@@ -147,7 +150,7 @@ impl Block {
                 k: 0.5 * (plus - minus) / root,
             };
         } else {
-            let root = (-self.square).sqrt();
+            let root = self.root;
             let (sine, cosine) = (root * s).sin_cos();
             (cosine, sine / root)
         };

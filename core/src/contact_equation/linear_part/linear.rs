@@ -13,7 +13,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::block::{Block, Square};
+use super::block::{Block, Square, add};
 use crate::numeric::spectrum::{balance, eigenvalues};
 
 /// What is smaller than this part of a matrix is rounding.
@@ -151,6 +151,17 @@ impl Linear {
             blocks,
             dependence,
         })
+    }
+
+    /// Writes `T` of states, column by column: rows of these matrices lie apart in memory. Sums have the order that they have row by row.
+    pub(in crate::contact_equation) fn write_physical(&self, states: &[f64], physical: &mut [f64]) {
+        physical.fill(0.0);
+        let halves = physical.split_at_mut(self.positions.nrows());
+        for (matrix, half) in [(&self.positions, halves.0), (&self.velocities, halves.1)] {
+            for (column, state) in matrix.column_iter().zip(states) {
+                add(half, *state, column.as_slice());
+            }
+        }
     }
 
     /// `T^-1` of positions and velocities.

@@ -183,7 +183,13 @@ impl Run<'_> {
 fn apart(finer: &Equations, extremes: &[[Place; 2]], accuracy: Accuracy) -> f64 {
     let motion = Motion::of(finer);
     let mut state = vec![0.0; finer.skeleton.order];
+    let comes_back = finer.skeleton.recurrence().image.is_identity();
     let mut off = |coordinate: usize, place: &Place| {
+        if comes_back {
+            // One coordinate of many.
+            let (interval, phase) = motion.interval(place.x);
+            return motion.coordinate(coordinate, interval, phase)[0] - place.value;
+        }
         motion.at(place.x, &mut state);
         state[coordinate] - place.value
     };

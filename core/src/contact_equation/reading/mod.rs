@@ -21,10 +21,12 @@
 pub(super) mod errors;
 pub(super) mod minimal_period;
 pub(super) mod overlooked;
+mod stretch;
 
 use nalgebra::DMatrix;
 
 use self::errors::{Steepness, everywhere};
+use self::stretch::Read;
 use super::equations::Equations;
 use super::orbit::motion::{Motion, Within};
 use super::run::Run;
@@ -113,10 +115,10 @@ impl Run<'_> {
         };
         for interval in 0..motion.intervals() {
             let [from, to] = motion.phases(interval);
-            let within = Within {
+            let within = Read::new(Within {
                 motion: &motion,
                 interval,
-            };
+            });
             if to > from && rounded {
                 outputs.include(&Rounded(&within));
             } else if to > from {
