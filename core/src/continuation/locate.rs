@@ -1,7 +1,7 @@
 //! Locating where a test function vanishes between two points of a curve.
 //!
-//! The curve between them is parametrised by the arc length `s` of the chord's first tangent, or of the chord where that tells more; every value of
-//! the test function is taken at a corrected solution. Where to look next is what [`Bracket`] says.
+//! The curve between them is parametrised by the arc length `s` of the chord's first tangent; every value of the test
+//! function is taken at a corrected solution. Where to look next is what [`Bracket`] says.
 
 use super::follow::{CurvePoint, Step};
 use super::problem::{AsProblem, Problem, Scale};
@@ -208,7 +208,7 @@ fn search_along<P: AsProblem + ?Sized>(
     })
 }
 
-/// The point of the curve at a part of a step, as its [`ArcLength`] tells.
+/// The point of the curve at a part of a step, as the arc length along the first tangent tells.
 ///
 /// `None` if the correction fails.
 pub(crate) fn inside(
@@ -219,8 +219,8 @@ pub(crate) fn inside(
     options: NewtonOptions,
 ) -> Option<CurvePoint> {
     let Step { before: a, next: b } = step;
-    let arc = ArcLength::of(newton, step);
-    let length = arc.at(&b.u);
+    let arc = ArcLength::from(newton, a);
+    let length = arc.length(newton, a, b);
     let value = f64::NAN;
     let [from, to] = [(0.0, a), (length, b)].map(|(x, point)| Side {
         place: Place { x, value },
@@ -230,8 +230,7 @@ pub(crate) fn inside(
     arc.corrected(problem, newton, trial, part * length, options)
 }
 
-/// The parameter of the curve behind a point: the arc length along the tangent there, or along the chord of a step where the tangent tells little
-/// of where that goes.
+/// The parameter of the curve behind a point: the arc length along the tangent there.
 pub(crate) struct ArcLength {
     border: Vec<f64>,
     /// The linear form at the point.
@@ -240,37 +239,13 @@ pub(crate) struct ArcLength {
 }
 
 impl ArcLength {
-    pub(super) fn from(newton: &Newton, a: &CurvePoint) -> Self {
+    pub(crate) fn from(newton: &Newton, a: &CurvePoint) -> Self {
         let mut border = vec![0.0; a.u.len()];
         newton.norm().linear_form(a.scale, &a.tangent, &mut border);
         Self {
             origin: dot(&border, &a.u),
             border,
             scale: a.scale,
-        }
-    }
-
-    /// That of a step.
-    pub(crate) fn of(newton: &Newton, step: Step<'_>) -> Self {
-        let (arc, chord) = (Self::from(newton, step.before), step.difference());
-        let scale = step.before.scale;
-        let (ahead, whole) = (arc.along(&chord), newton.norm().length(scale, &chord));
-        let behind = newton.norm().product(scale, &step.next.tangent, &chord);
-        // A chord that goes against the curve at one of its ends is none: a point may be known but for some of its unknowns.
-        if ahead.abs() > SLANTED * whole || ahead * behind <= 0.0 {
-            return arc;
-        }
-        let mut border = vec![0.0; chord.len()];
-        newton.norm().linear_form(scale, &chord, &mut border);
-        // It goes where the tangent goes.
-        let unit = whole.copysign(ahead);
-        for x in &mut border {
-            *x /= unit;
-        }
-        Self {
-            origin: dot(&border, &step.before.u),
-            border,
-            scale,
         }
     }
 

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! of the way `s` along the branch, in units `l` of that to the end of the step, and may pass zero twice in a part of it that is small in `s`. Orbits
-//! are computed at three places in `r`, and where between these (1) or (2) of [`inside`](super::inside) come down to zero in `r`. So they are
+//! are computed at two places in `r`, and where between these (1) or (2) of [`inside`](super::inside) come down to zero in `r`. So they are
 //! in the step behind that one, since the first may end next to the touch.
 //!
 //! Source: Nordmark (1991), Non-periodic motion caused by grazing incidence in an impact oscillator, Journal of Sound and Vibration 145 (the root);
@@ -22,7 +22,7 @@ use crate::continuation::locate::{ArcLength, inside};
 use crate::continuation::newton::{Newton, NewtonOptions};
 
 /// Where orbits are computed in any case, by (1).
-const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
+const PLACES: [f64; 2] = [0.3, 0.65];
 
 /// A part of the way from a touch on, and the orbits known on it.
 struct Behind<'s> {
@@ -52,10 +52,13 @@ impl Engine {
             known: vec![(0.0, touch.clone()), (1.0, end.clone())],
             options: self.options.newton,
         };
+        let contraction = newton.contraction();
         for place in PLACES {
             behind.add(problem, newton, place);
         }
         behind.seek_all(problem, newton);
+        // What is only looked at leaves the walk as it is.
+        newton.remember_contraction(contraction);
         behind.found()
     }
 
@@ -71,7 +74,7 @@ impl Engine {
         if ends.iter().any(|end| end.point.u.len() != length) {
             return Vec::new();
         }
-        let along = ArcLength::of(newton, step_between([touch, ends[1]]));
+        let along = ArcLength::from(newton, &touch.point);
         let ways = ends.map(|end| along.at(&end.point.u));
         let part = ways[0] / ways[1];
         let goes_on = part > 0.0 && part < 1.0;
@@ -87,7 +90,9 @@ impl Engine {
             known: known.map(|(r, seen)| (r, seen.clone())).into(),
             options: self.options.newton,
         };
+        let contraction = newton.contraction();
         behind.seek_all(problem, newton);
+        newton.remember_contraction(contraction);
         behind.found()
     }
 }

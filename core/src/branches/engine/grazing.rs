@@ -8,7 +8,6 @@
 use super::Engine;
 use super::grazing_search::{Approach, Reached, on_the_way};
 use super::grazing_within_step::Steps;
-use super::inside::step_between;
 use super::seen::Seen;
 use crate::branches::extreme::{
     Bend, Extreme, Passage, appears, crossings, distinct, is_copy, passed,
@@ -174,7 +173,7 @@ impl Engine {
         }
         let ends = [before, before + 1].map(|place| self.seen[place].clone());
         let begin = &ends[0].point;
-        let along = ArcLength::of(newton, step_between([&ends[0], &ends[1]]));
+        let along = ArcLength::from(newton, &ends[0].point);
         let whole = along.at(&ends[1].point.u);
         let within = |orbit: &Touching| {
             let part = along.at(&orbit.point.u) / whole;

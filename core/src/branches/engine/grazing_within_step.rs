@@ -70,7 +70,7 @@ impl Steps {
                 let Some(found) = search.across(problem, newton, &heights) else {
                     continue;
                 };
-                let along = ArcLength::of(newton, search.whole);
+                let along = ArcLength::from(newton, search.whole.before);
                 let place = |gaps: &Gaps| along.at(&gaps.point.u);
                 let parts = &self.parts[step];
                 let next = parts.iter().position(|part| place(part) > place(&found));

@@ -270,7 +270,11 @@ impl Engine {
             let place = in_doubt(&known, [from, from + whole], CLOSE * whole)?;
             let options = self.options.newton;
             let part = (place - from) / whole;
-            let point = inside(problem.equations(), newton, ends, part, options)?;
+            // What is only looked at leaves the walk as it is.
+            let contraction = newton.contraction();
+            let point = inside(problem.equations(), newton, ends, part, options);
+            newton.remember_contraction(contraction);
+            let point = point?;
             let seen = Seen::at(problem, &point, between[0].falls);
             let mut pairs = seen.values.iter().zip(&between[0].values);
             if pairs.any(|(here, there)| there.is_known() && !here.is_known()) {
@@ -313,7 +317,7 @@ impl Engine {
         let turn = locate(problem, newton, step, options, wanted, |problem, at| {
             problem.slope(at)
         })?;
-        let along = ArcLength::of(newton, step);
+        let along = ArcLength::from(newton, step.before);
         let place = along.at(&turn.point.u) / along.at(&step.next.u);
         let mut beside = |part: f64| {
             let point = inside(problem.equations(), newton, step, part, options)?;
@@ -480,7 +484,7 @@ pub(super) fn step_between([a, b]: [&Seen; 2]) -> Step<'_> {
 /// Puts an orbit to its place among the parts of a step.
 fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
     let last = &parts[parts.len() - 1];
-    let along = ArcLength::of(newton, step_between([&parts[0], last]));
+    let along = ArcLength::from(newton, &parts[0].point);
     let whole = along.at(&last.point.u);
     let along = |seen: &Seen| along.at(&seen.point.u) / whole;
     let place = along(&found);
@@ -490,8 +494,7 @@ fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
 
 /// How far a point is behind another one.
 pub(super) fn distance(newton: &Newton, a: &CurvePoint, b: &CurvePoint) -> f64 {
-    let step = Step { before: a, next: b };
-    ArcLength::of(newton, step).at(&b.u)
+    ArcLength::from(newton, a).at(&b.u)
 }
 
 /// Where (1) or (2) comes down lowest in an interval, below zero, between known heights that are not too close.

@@ -2,6 +2,7 @@
 //! values (`figures`), models of the literature (`reference`), shooting (`shooting`), random models (`robust`), and where methods
 //! fail (`failures`).
 
+mod bumps;
 mod closed_forms;
 mod copies;
 mod coupled;
