@@ -93,6 +93,11 @@ pub(crate) fn orbit(
         solve::at_value(&mut run.equations, &mut newton, &mut u, AT_START)
             .map_err(|reason| OrbitError::NoStart { value, reason })?;
         run.clear_finer();
+        // What nodes see now may have other switches.
+        run.equations.compute(&u, false);
+        if run.equations.failed || run.fits(&u) == Fits::No {
+            return Err(lost(value).into());
+        }
     }
 }
 

@@ -15,7 +15,7 @@
 //! di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2.
 
 use super::Engine;
-use super::inside::{CLOSE, Height, LOOKS, distance, in_doubt, noise_of, step_between, tests};
+use super::inside::{CLOSE, Height, LOOKS, distance, in_doubt, is_on_way, noise_of, step_between};
 use super::seen::Seen;
 use crate::branches::problem::{BranchProblem, Test};
 use crate::continuation::locate::{ArcLength, inside};
@@ -106,19 +106,26 @@ impl Behind<'_> {
         let Some(point) = inside(problem.equations(), newton, step, part, self.options) else {
             return false;
         };
+        if !is_on_way(newton, step, &point) {
+            return false;
+        }
         let seen = Seen::at(problem, &point, self.ends[0].falls);
         let next = self.known.iter().position(|(other, _)| *other > place);
         self.known.insert(next.unwrap_or(1), (place, seen));
         true
     }
 
-    /// Adds orbits where a test function has another sign than at both ends, if there may be one.
+    /// Adds orbits where a function of multipliers has another sign than at both ends, if there may be one.
     fn seek_all(&mut self, problem: &mut dyn BranchProblem, newton: &mut Newton) {
-        for test in tests(problem) {
+        let watched = 0..problem.watched().len();
+        let of_map: Vec<usize> = watched
+            .filter(|of| problem.is_of_multipliers(*of))
+            .collect();
+        for test in of_map.into_iter().map(Test::Watched) {
             let noise = noise_of(problem, test, self.ends[0]);
             for _ in 0..LOOKS {
                 let heights = self.heights(test, noise);
-                let place = heights.and_then(|known| in_doubt(&known, self.range, CLOSE));
+                let place = heights.and_then(|known| in_doubt(&known, self.range, CLOSE, true));
                 if !place.is_some_and(|place| self.add(problem, newton, place)) {
                     break;
                 }

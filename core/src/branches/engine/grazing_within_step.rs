@@ -128,7 +128,7 @@ impl Search<'_> {
         let [from, to] = self.range;
         let mut known = heights.to_vec();
         for _ in 0..LOOKS {
-            let place = in_doubt(&known, self.range, CLOSE * (to - from))?;
+            let place = in_doubt(&known, self.range, CLOSE * (to - from), false)?;
             let part = (place - from) / (to - from);
             let point = inside(problem.equations(), newton, self.whole, part, self.options)?;
             let gaps = Gaps::at(problem, &point)?;

@@ -266,8 +266,15 @@ impl Engine {
         } = *descent;
         let ends = step_between(between);
         let mut known = known.to_vec();
+        // What falls steeply and is not of multipliers alone is that of a branch which bends, or which another one crosses: tangents tell little of
+        // which way it goes there.
+        let kinks = match descent.sought {
+            Sought::Test(Test::Slope) => false,
+            Sought::Test(Test::Watched(index)) => problem.is_of_multipliers(index),
+            Sought::Meeting(_) => true,
+        };
         for _ in 0..LOOKS {
-            let place = in_doubt(&known, [from, from + whole], CLOSE * whole)?;
+            let place = in_doubt(&known, [from, from + whole], CLOSE * whole, kinks)?;
             let options = self.options.newton;
             let part = (place - from) / whole;
             // What is only looked at leaves the walk as it is.
@@ -275,6 +282,9 @@ impl Engine {
             let point = inside(problem.equations(), newton, ends, part, options);
             newton.remember_contraction(contraction);
             let point = point?;
+            if kinks && !is_on_way(newton, ends, &point) {
+                return None;
+            }
             let seen = Seen::at(problem, &point, between[0].falls);
             let mut pairs = seen.values.iter().zip(&between[0].values);
             if pairs.any(|(here, there)| there.is_known() && !here.is_known()) {
@@ -354,7 +364,7 @@ pub(super) fn noise_of(problem: &dyn BranchProblem, test: Test, at: &Seen) -> f6
 }
 
 /// All test functions.
-pub(super) fn tests(problem: &dyn BranchProblem) -> impl Iterator<Item = Test> + use<> {
+fn tests(problem: &dyn BranchProblem) -> impl Iterator<Item = Test> + use<> {
     let watched = (0..problem.watched().len()).map(Test::Watched);
     [Test::Slope].into_iter().chain(watched)
 }
@@ -481,6 +491,15 @@ pub(super) fn step_between([a, b]: [&Seen; 2]) -> Step<'_> {
     }
 }
 
+/// Whether the tangent of an orbit within a step leads along its chord as those of both ends do. Where a branch bends by more than that, which way it
+/// goes at an orbit is not known, and with it the signs of determinants.
+pub(super) fn is_on_way(newton: &Newton, step: Step<'_>, found: &CurvePoint) -> bool {
+    let (chord, scale) = (step.difference(), step.before.scale);
+    let along = |at: &CurvePoint| newton.norm().product(scale, &at.tangent, &chord);
+    let [a, b, here] = [step.before, step.next, found].map(along);
+    here * a > 0.0 && here * b > 0.0
+}
+
 /// Puts an orbit to its place among the parts of a step.
 fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
     let last = &parts[parts.len() - 1];
@@ -497,8 +516,13 @@ pub(super) fn distance(newton: &Newton, a: &CurvePoint, b: &CurvePoint) -> f64 {
     ArcLength::from(newton, a).at(&b.u)
 }
 
-/// Where (1) or (2) comes down lowest in an interval, below zero, between known heights that are not too close.
-pub(super) fn in_doubt(known: &[Height], [from, to]: [f64; 2], close: f64) -> Option<f64> {
+/// Where (1), or (2) if there may be kinks, comes down lowest in an interval, below zero, between known heights that are not too close.
+pub(super) fn in_doubt(
+    known: &[Height],
+    [from, to]: [f64; 2],
+    close: f64,
+    kinks: bool,
+) -> Option<f64> {
     let differences: Vec<f64> = known.windows(3).map(second_difference).collect();
     let mut deepest: Option<Height> = None;
     for (i, pair) in known.windows(2).enumerate() {
@@ -512,7 +536,7 @@ pub(super) fn in_doubt(known: &[Height], [from, to]: [f64; 2], close: f64) -> Op
         let largest = differences.fold(0.0, |largest: f64, c| largest.max(c.abs()));
         let lowest = [
             Some(lowest_between(a, b, TRUSTED * largest)),
-            below_chords(known, i),
+            below_chords(known, i).filter(|_| kinks),
         ];
         for lowest in lowest.into_iter().flatten() {
             let lower = |other: &Height| lowest.height < other.height;
@@ -587,7 +611,7 @@ mod tests {
         let mut known: Vec<Height> = places.map(at).into();
         for looks in 0..LOOKS {
             let step = [places[1], places[2]];
-            let Some(place) = in_doubt(&known, step, CLOSE * (places[2] - places[1])) else {
+            let Some(place) = in_doubt(&known, step, CLOSE * (places[2] - places[1]), true) else {
                 return Err(looks);
             };
             if f(place) < 0.0 {

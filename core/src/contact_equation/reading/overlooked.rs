@@ -18,14 +18,9 @@ use crate::laws::generic::scales::Scales;
 
 /// Widths that nodes may be apart, by (1).
 const SEEN: f64 = 2.0;
-/// Narrow places are looked for in the range of a gap, and so many times its length beyond it, so that they need not be at every orbit.
-const BEYOND: f64 = 0.5;
-
 /// Where the law of a contact has narrow places.
 pub(in crate::contact_equation) struct Sharp {
     scales: Scales,
-    /// The range of gaps they were looked for in, with these arguments.
-    looked: Option<([f64; 2], Vec<f64>)>,
     places: Vec<Narrow>,
 }
 
@@ -34,7 +29,6 @@ impl Sharp {
     pub(in crate::contact_equation) fn of(scales: Scales) -> Self {
         Self {
             scales,
-            looked: None,
             places: Vec::new(),
         }
     }
@@ -43,18 +37,12 @@ impl Sharp {
     fn places(&mut self, [arguments, levels]: [&[f64]; 2], gaps: &[f64]) -> &[Narrow] {
         let low = gaps.iter().copied().fold(f64::INFINITY, f64::min);
         let high = gaps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let known = self.looked.as_ref().is_some_and(|([from, to], of)| {
-            *from <= low && high <= *to && of == arguments && to - from <= 4.0 * (high - low)
-        });
-        if !known {
-            self.places.clear();
-            self.scales.set(arguments, levels);
-            let beyond = BEYOND * (high - low);
-            let range = [low - beyond, high + beyond];
-            if self.scales.may_be_narrow() {
-                self.scales.narrow(range, &mut self.places);
-            }
-            self.looked = Some((range, arguments.to_vec()));
+        self.places.clear();
+        self.scales.set(arguments, levels);
+        // How wide a place is depends on where it is looked for: on this orbit alone.
+        let range = [low, high];
+        if self.scales.may_be_narrow() {
+            self.scales.narrow(range, &mut self.places);
         }
         &self.places
     }
