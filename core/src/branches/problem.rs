@@ -185,11 +185,6 @@ pub(crate) trait BranchProblem {
         0.0
     }
 
-    /// Whether a test function is of multipliers alone, and so the same whatever the unknowns are.
-    fn is_of_multipliers(&self, index: usize) -> bool {
-        self.watched()[index].kind == EventKind::NeimarkSacker
-    }
-
     /// A test function is driven below this.
     fn aim(&self) -> f64;
 

@@ -188,7 +188,6 @@ impl Engine {
             self.seen.clear();
             self.gaps.clear();
             self.touched.clear();
-            self.crossed = None;
             self.refused = true;
         }
         tried.end();
@@ -367,7 +366,7 @@ fn ahead(problem: &mut dyn BranchProblem, at: &CurvePoint, step: f64) -> Vec<(f6
         let bends = match extreme.bend {
             Bend::Corner => true,
             Bend::Steep => step < BENDS_WITHIN,
-            Bend::Root | Bend::Smooth => false,
+            Bend::Smooth => false,
         };
         if !bends || extreme.above.abs() > NEAR {
             continue;
