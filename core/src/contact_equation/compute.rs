@@ -83,11 +83,11 @@ pub(crate) fn orbit(
             u,
         };
         let read = run.read(&at).ok_or(lost(value))?;
-        let Some(needed) = read.overlooks else {
+        let Some(overlooked) = read.overlooks else {
             return Ok(read.point);
         };
         // Nodes that step over a narrow place of a law have not seen the orbit.
-        run.resolution = needed.ok_or(lost(value))?;
+        run.resolution = overlooked.needed.ok_or(lost(value))?;
         (run.equations, u) = run.replanned(&at.u).ok_or(lost(value))?;
         newton = Newton::new(&run.equations);
         solve::at_value(&mut run.equations, &mut newton, &mut u, AT_START)

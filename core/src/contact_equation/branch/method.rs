@@ -246,7 +246,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
     /// What is done with an orbit that was read, by equations that fit it.
     fn decide(&mut self, at: &CurvePoint, read: ReadOrbit, fits: Fits, stuck: bool) -> Read {
         let wanted = match read.overlooks {
-            Some(needed) => needed.unwrap_or(self.run.resolution),
+            Some(overlooked) => overlooked.needed.unwrap_or(self.run.resolution),
             None => self.wanted(&read.point),
         };
         let coarse = wanted > self.run.resolution;

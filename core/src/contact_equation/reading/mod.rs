@@ -26,6 +26,7 @@ mod stretch;
 use nalgebra::DMatrix;
 
 use self::errors::{Steepness, everywhere};
+use self::overlooked::Overlooked;
 use self::stretch::Read;
 use super::equations::Equations;
 use super::orbit::motion::{Motion, Within};
@@ -57,8 +58,8 @@ pub(super) struct ReadOrbit {
     pub(super) shift: f64,
     /// The map of that finer solution.
     pub(super) finer: Option<DMatrix<f64>>,
-    /// Nodes step over a narrow place of a law, so that the finer solution says nothing: the resolution that does not, if there is one.
-    pub(super) overlooks: Option<Option<usize>>,
+    /// Where nodes step over a narrow place of a law, so that a finer solution says nothing.
+    pub(super) overlooks: Option<Overlooked>,
 }
 
 impl Run<'_> {

@@ -18,6 +18,14 @@ use crate::laws::generic::scales::Scales;
 
 /// Widths that nodes may be apart, by (1).
 const SEEN: f64 = 2.0;
+
+/// Nodes step over a narrow place of a law.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::contact_equation) struct Overlooked {
+    /// The first resolution that does not, if there is one.
+    pub(in crate::contact_equation) needed: Option<usize>,
+}
+
 /// Where the law of a contact has narrow places.
 pub(in crate::contact_equation) struct Sharp {
     scales: Scales,
@@ -49,8 +57,8 @@ impl Sharp {
 }
 
 impl Run<'_> {
-    /// Whether nodes of the last pass step over a narrow place of a law, and the first resolution that does not, if there is one.
-    pub(super) fn overlooks(&mut self) -> Option<Option<usize>> {
+    /// Whether nodes of the last pass step over a narrow place of a law.
+    pub(super) fn overlooks(&mut self) -> Option<Overlooked> {
         let mut sharp = std::mem::take(&mut self.sharp);
         let widest = self.widest(&mut sharp);
         self.sharp = sharp;
@@ -60,7 +68,8 @@ impl Run<'_> {
         let nodes = |of: usize| (RESOLUTIONS[of].nodes * RESOLUTIONS[of].panels) as f64;
         let needed = nodes(self.resolution) * widest / SEEN;
         let mut finer = self.resolution + 1..RESOLUTIONS.len();
-        Some(finer.find(|of| nodes(*of) >= needed))
+        let needed = finer.find(|of| nodes(*of) >= needed);
+        Some(Overlooked { needed })
     }
 
     /// How far nodes are apart about a narrow place, in widths, at most.
