@@ -38,8 +38,10 @@ pub(crate) fn corners(system: &dyn System) -> bool {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub(crate) enum Bend {
-    /// They go on: the stiffness is bounded.
+    /// They go on: the stiffness does.
     Smooth,
+    /// Multipliers go as the root of the height: the stiffness, or what the force is of the rate, jumps.
+    Root,
     /// They are continuous, and steeper than can be resolved: `p` is between a half and one.
     Steep,
     /// The branch may have a corner of any angle, and multipliers jump or are unbounded: the force jumps, or `p` is a half at most.
@@ -54,6 +56,8 @@ impl Bend {
             _ if facts.levels[level].force_jumps => Self::Corner,
             Some(exponent) if exponent <= -0.5 => Self::Corner,
             Some(_) => Self::Steep,
+            None if facts.levels[level].by_gap_jumps => Self::Root,
+            None if facts.levels[level].by_rate_jumps => Self::Root,
             None => Self::Smooth,
         }
     }

@@ -185,6 +185,11 @@ pub(crate) trait BranchProblem {
         0.0
     }
 
+    /// Whether a test function is of multipliers alone, and so the same whatever the unknowns are.
+    fn is_of_multipliers(&self, index: usize) -> bool {
+        self.watched()[index].kind == EventKind::NeimarkSacker
+    }
+
     /// A test function is driven below this.
     fn aim(&self) -> f64;
 

@@ -231,7 +231,7 @@ pub(crate) fn inside(
 }
 
 /// The parameter of the curve behind a point: the arc length along the tangent there.
-pub(super) struct ArcLength {
+pub(crate) struct ArcLength {
     border: Vec<f64>,
     /// The linear form at the point.
     origin: f64,
@@ -239,7 +239,7 @@ pub(super) struct ArcLength {
 }
 
 impl ArcLength {
-    pub(super) fn from(newton: &Newton, a: &CurvePoint) -> Self {
+    pub(crate) fn from(newton: &Newton, a: &CurvePoint) -> Self {
         let mut border = vec![0.0; a.u.len()];
         newton.norm().linear_form(a.scale, &a.tangent, &mut border);
         Self {
@@ -269,7 +269,7 @@ impl ArcLength {
     }
 
     /// The same, from the linear form.
-    pub(super) fn at(&self, u: &[f64]) -> f64 {
+    pub(crate) fn at(&self, u: &[f64]) -> f64 {
         dot(&self.border, u) - self.origin
     }
 

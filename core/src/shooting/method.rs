@@ -166,6 +166,10 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         watches.then(|| moduli::pairs(&self.tests(at).multipliers))
     }
 
+    fn is_of_multipliers(&self, index: usize) -> bool {
+        !self.watched[index].bordered
+    }
+
     fn vanishing(&self) -> f64 {
         self.run.problem.vanishing(self.equations.frame.ratio)
     }

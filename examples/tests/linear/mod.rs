@@ -1,4 +1,4 @@
-//! What examples of structures find, against what is known without following anything: linear vibration, statics, and balances of forces.
+//! What examples of structures find, against what is known without following anything: linear vibration, equilibria, and balances of forces.
 
 mod casing;
 mod chain_of_beads;

@@ -65,6 +65,7 @@ impl Engine {
             };
             self.seen.clear();
             self.looked = None;
+            self.crossed = None;
             let seen = last.map(|at| Seen::at(problem, at, self.falls));
             self.seen.extend(seen);
         }

@@ -188,6 +188,7 @@ impl Engine {
             self.seen.clear();
             self.gaps.clear();
             self.touched.clear();
+            self.crossed = None;
             self.refused = true;
         }
         tried.end();
@@ -366,7 +367,7 @@ fn ahead(problem: &mut dyn BranchProblem, at: &CurvePoint, step: f64) -> Vec<(f6
         let bends = match extreme.bend {
             Bend::Corner => true,
             Bend::Steep => step < BENDS_WITHIN,
-            Bend::Smooth => false,
+            Bend::Root | Bend::Smooth => false,
         };
         if !bends || extreme.above.abs() > NEAR {
             continue;

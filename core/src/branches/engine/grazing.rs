@@ -8,14 +8,13 @@
 use super::Engine;
 use super::grazing_search::{Approach, Reached, on_the_way};
 use super::grazing_within_step::Steps;
-use super::inside::distance;
 use super::seen::Seen;
 use crate::branches::extreme::{
     Bend, Extreme, Passage, appears, crossings, distinct, is_copy, passed,
 };
 use crate::branches::problem::{BranchProblem, Touch};
 use crate::continuation::follow::{CurvePoint, Step};
-use crate::continuation::locate::inside;
+use crate::continuation::locate::{ArcLength, inside};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::event::{EventKind, Turn};
 
@@ -48,9 +47,16 @@ struct TouchSearch<'s> {
     /// Where touches were found.
     found: Vec<f64>,
     /// The orbits there, of those that are no corners.
-    orbits: Vec<CurvePoint>,
+    orbits: Vec<Touching>,
     /// Those at which the branch or its multipliers bend.
     bent: Vec<Bent>,
+}
+
+/// An orbit that touches a level.
+struct Touching {
+    point: CurvePoint,
+    /// The end of the part of the step where the level is crossed, if multipliers bend at the touch.
+    crossed: Option<CurvePoint>,
 }
 
 /// A point with the extremes of its gaps.
@@ -117,7 +123,16 @@ impl Engine {
         search.between_all(problem, newton, &parts);
         self.touched = search.found;
         self.bent.append(&mut search.bent);
-        self.beside_touches(problem, newton, search.orbits, 1, after);
+        let (orbits, crossed) = (search.orbits, self.crossed.take());
+        if let (Some(touch), [.., a, b]) = (crossed, &self.seen[..]) {
+            let ends = [a.clone(), b.clone()];
+            let inner = self.farther_behind(problem, newton, &touch, [a, b]);
+            self.record_between(problem, newton, ends, inner, after);
+            if self.ended.is_some() {
+                return;
+            }
+        }
+        self.beside_touches(problem, newton, orbits, 1, after);
     }
 
     /// The same in the step to where the branch ends, which stands already.
@@ -140,13 +155,13 @@ impl Engine {
         problem.record_mut().ends_with_joint();
     }
 
-    /// Records what test functions show at touches, and at no end of the step between the points of these places from the last one on. Behind a
-    /// touch they change as a root or along another line: no parabola through three points tells that.
+    /// Records what test functions show at touches and behind them, and at no end of the step between the points of these places from the last one
+    /// on. Behind a touch they change as a root or along another line: no parabola through three points tells that.
     fn beside_touches(
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
-        orbits: Vec<CurvePoint>,
+        orbits: Vec<Touching>,
         place: usize,
         after: usize,
     ) {
@@ -157,26 +172,49 @@ impl Engine {
             return;
         }
         let ends = [before, before + 1].map(|place| self.seen[place].clone());
-        let along = &ends[0].point;
-        let whole = distance(newton, along, &ends[1].point);
-        let within = |orbit: &CurvePoint| {
-            let part = distance(newton, along, orbit) / whole;
+        let begin = &ends[0].point;
+        let along = ArcLength::from(newton, &ends[0].point);
+        let whole = along.at(&ends[1].point.u);
+        let within = |orbit: &Touching| {
+            let part = along.at(&orbit.point.u) / whole;
             part > AT_END && part < 1.0 - AT_END
         };
-        let orbits: Vec<CurvePoint> = orbits.into_iter().filter(within).collect();
-        let touches = orbits.into_iter().map(|mut orbit| {
+        let (mut inner, mut earlier) = (Vec::new(), Vec::new());
+        let mut farthest = f64::NEG_INFINITY;
+        for touching in orbits {
+            let inside = within(&touching);
+            let Touching { mut point, crossed } = touching;
             // It was come to from either side.
-            if newton
-                .norm()
-                .product(along.scale, &orbit.tangent, &along.tangent)
-                < 0.0
-            {
-                orbit.tangent.iter_mut().for_each(|t| *t = -*t);
+            let norm = newton.norm();
+            if norm.product(begin.scale, &point.tangent, &begin.tangent) < 0.0 {
+                point.tangent.iter_mut().for_each(|t| *t = -*t);
             }
-            Seen::at(problem, &orbit, ends[0].falls)
-        });
-        let touches: Vec<Seen> = touches.collect();
-        self.record_between(problem, newton, ends, touches, after);
+            let touch = Seen::at(problem, &point, ends[0].falls);
+            let crosses = |end: usize| crossed.as_ref().is_some_and(|at| at.u == ends[end].point.u);
+            let other = before.checked_sub(1).map(|place| &self.seen[place]);
+            if let Some(other) = other.filter(|_| crosses(0)) {
+                earlier.extend(self.farther_behind(problem, newton, &touch, [&ends[0], other]));
+            }
+            if crosses(1) && along.at(&touch.point.u) / whole > farthest {
+                farthest = along.at(&touch.point.u) / whole;
+                self.crossed = Some(touch.clone());
+            }
+            if let Some(end) = crossed.filter(|_| inside) {
+                let end = Seen::at(problem, &end, ends[0].falls);
+                inner.extend(self.behind_touch(problem, newton, &touch, &end));
+            }
+            if inside {
+                inner.push(touch);
+            }
+        }
+        if let Some(other) = before.checked_sub(1).filter(|_| !earlier.is_empty()) {
+            let step = [self.seen[other].clone(), ends[0].clone()];
+            self.record_between(problem, newton, step, earlier, after - 1);
+            if self.ended.is_some() {
+                return;
+            }
+        }
+        self.record_between(problem, newton, ends, inner, after);
     }
 
     /// A search for the touches in a step behind so many points.
@@ -224,7 +262,7 @@ impl Engine {
     }
 }
 
-/// A touch at which the branch or its multipliers bend.
+/// A touch at which the branch or its multipliers bend more than a root does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Bent {
@@ -243,7 +281,7 @@ impl Bent {
         self.value.is_finite()
     }
 
-    /// Has a touch kept, of an orbit with these extremes. Says what bends there, if anything does and it is an event.
+    /// Has a touch kept, of an orbit with these extremes. Says what bends there, if anything does so and it is an event.
     pub(super) fn kept(
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
@@ -257,7 +295,7 @@ impl Bent {
         let touching = extremes.iter();
         let touching = touching.filter(|extreme| extreme.above.abs() <= AT_ONCE);
         let bend = touching.fold(touch.extreme.bend, |bend, extreme| bend.max(extreme.bend));
-        (bend != Bend::Smooth).then_some(Self {
+        (bend > Bend::Root).then_some(Self {
             after: touch.after,
             value: event.point.value,
             bend,
@@ -425,7 +463,16 @@ impl TouchSearch<'_> {
         }
         self.found.push(value);
         if extreme.bend != Bend::Corner {
-            self.orbits.push(located.point.clone());
+            let bends = extreme.bend != Bend::Smooth;
+            let crossed = if found[0].before.is_clear() {
+                step.next
+            } else {
+                step.before
+            };
+            self.orbits.push(Touching {
+                point: located.point.clone(),
+                crossed: bends.then(|| crossed.clone()),
+            });
         }
         let touch = Touch {
             located,

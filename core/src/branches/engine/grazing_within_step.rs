@@ -8,7 +8,7 @@ use super::inside::{CLOSE, Height, LOOKS, distance, in_doubt};
 use crate::branches::extreme::Extreme;
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::Step;
-use crate::continuation::locate::inside;
+use crate::continuation::locate::{ArcLength, inside};
 use crate::continuation::newton::{Newton, NewtonOptions};
 
 /// An extreme that is nearer to its level, in units of the gap, stays there: which side of it is rounding.
@@ -67,12 +67,13 @@ impl Steps {
                     range: [self.places[step], self.places[step + 1]],
                     options,
                 };
-                let Some((place, found)) = search.across(problem, newton, &heights) else {
+                let Some(found) = search.across(problem, newton, &heights) else {
                     continue;
                 };
-                let along = |gaps: &Gaps| distance(newton, &self.ends[0].point, &gaps.point);
+                let along = ArcLength::from(newton, search.whole.before);
+                let place = |gaps: &Gaps| along.at(&gaps.point.u);
                 let parts = &self.parts[step];
-                let next = parts.iter().position(|part| along(part) > place);
+                let next = parts.iter().position(|part| place(part) > place(&found));
                 let next = next.unwrap_or(parts.len() - 1).max(1);
                 self.parts[step].insert(next, found);
             }
@@ -117,24 +118,24 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// An orbit in the step where the extreme is on the other side of its level, and its place.
+    /// An orbit in the step where the extreme is on the other side of its level.
     fn across(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         heights: &[Height; 3],
-    ) -> Option<(f64, Gaps)> {
+    ) -> Option<Gaps> {
         let [from, to] = self.range;
         let mut known = heights.to_vec();
         for _ in 0..LOOKS {
-            let place = in_doubt(&known, self.range, CLOSE * (to - from))?;
+            let place = in_doubt(&known, self.range, CLOSE * (to - from), false)?;
             let part = (place - from) / (to - from);
             let point = inside(problem.equations(), newton, self.whole, part, self.options)?;
             let gaps = Gaps::at(problem, &point)?;
             let there = self.extreme.nearest(&gaps.extremes)?;
             let height = self.extreme.above.signum() * there.above;
             if height < 0.0 {
-                return Some((place, gaps));
+                return Some(gaps);
             }
             let next = known.iter().position(|other| other.place > place)?;
             known.insert(next, Height { place, height });

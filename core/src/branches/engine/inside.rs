@@ -7,23 +7,32 @@
 //! p + (q - p) s / l - c s (l - s)                                                                            (1)
 //! ```
 //!
-//! The second difference of three successive points is trusted to a factor. Where (1) comes down to zero with it, the orbit there is
-//! computed, and both parts are looked at with the differences that are known then, until one has the other sign or all stay above. It may
-//! be in the step before the last one, since a point beside the second zero says nothing until the next one is known.
+//! The second difference of three successive points is trusted to a factor. Where a level is touched between two points the function may have a
+//! kink, to which no second difference is a bound. If it is convex but for that it stays above the chords of the parts beside, with slopes
+//! `m` before and `n` behind,
+//!
+//! ```text
+//! p + m s,     q - n (l - s),                                                                                  (2)
+//! ```
+//!
+//! which meet where `s = (q - p - n l) / (m - n)`. Where (1) or (2) comes down to zero, the orbit there is computed, and both parts are looked at
+//! with the differences that are known then, until one has the other sign or all stay above. It may be in the step before the last one, since a
+//! point beside the second zero says nothing until the next one is known.
 //!
 //! Where a branch turns and the bordered determinant changes its sign as well, that is one place, where it ends on another branch, or
 //! two, a fold and a crossing: orbits on both sides of the turn tell.
 //!
 //! Source: (1) is the error bound of linear interpolation, as Piyavskii (1972), An algorithm for finding the absolute extremum of a
-//! function, uses it with a bound on the first derivative.
+//! function, uses it with a bound on the first derivative. (2) are the two lines below a convex function of Rote (1992), The convergence rate of
+//! the sandwich algorithm for approximating convex functions.
 
 use super::Engine;
 use super::meeting::Meeting;
 use super::seen::{Former, Seen, changes, signs};
 use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
 use crate::continuation::follow::{CurvePoint, Step};
-use crate::continuation::locate::{inside, locate};
-use crate::continuation::newton::Newton;
+use crate::continuation::locate::{ArcLength, inside, locate};
+use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::event::EventKind;
 
 /// A second difference may be so many times as large between the points that it was taken of.
@@ -35,6 +44,8 @@ pub(super) const CLOSE: f64 = 1e-3;
 const ASIDE: f64 = 0.15;
 /// Half of the widths about a turn that are looked at, as parts of the step.
 const BESIDE: [f64; 3] = [1e-2, 1e-3, 1e-4];
+/// Orbits there are known to this part of how far they are from the turn: a step may be hardly longer than what Newton's method leaves.
+const KNOWN: f64 = 1e-2;
 /// A zero is in the middle of a width if the values at both ends differ by less than this part.
 const MIDDLE: f64 = 0.2;
 
@@ -214,8 +225,7 @@ impl Engine {
             height: heights[i],
         });
         let noise = match sought {
-            Sought::Test(Test::Slope) => points[1].point.narrowness() * problem.vanishing(),
-            Sought::Test(Test::Watched(index)) => problem.noise(index).max(problem.vanishing()),
+            Sought::Test(test) => noise_of(problem, test, points[1]),
             Sought::Meeting(_) => 0.0,
         };
         let steps = if former.is_some() { &[1][..] } else { &[1, 0] };
@@ -258,11 +268,25 @@ impl Engine {
         } = *descent;
         let ends = step_between(between);
         let mut known = known.to_vec();
+        // What falls steeply and is not of multipliers alone is that of a branch which bends, or which another one crosses: tangents tell little of
+        // which way it goes there.
+        let kinks = match descent.sought {
+            Sought::Test(Test::Slope) => false,
+            Sought::Test(Test::Watched(index)) => problem.is_of_multipliers(index),
+            Sought::Meeting(_) => true,
+        };
         for _ in 0..LOOKS {
-            let place = in_doubt(&known, [from, from + whole], CLOSE * whole)?;
+            let place = in_doubt(&known, [from, from + whole], CLOSE * whole, kinks)?;
             let options = self.options.newton;
             let part = (place - from) / whole;
-            let point = inside(problem.equations(), newton, ends, part, options)?;
+            // What is only looked at leaves the walk as it is.
+            let contraction = newton.contraction();
+            let point = inside(problem.equations(), newton, ends, part, options);
+            newton.remember_contraction(contraction);
+            let point = point?;
+            if kinks && !is_on_way(newton, ends, &point) {
+                return None;
+            }
             let seen = Seen::at(problem, &point, between[0].falls);
             let mut pairs = seen.values.iter().zip(&between[0].values);
             if pairs.any(|(here, there)| there.is_known() && !here.is_known()) {
@@ -300,20 +324,32 @@ impl Engine {
             .iter()
             .position(|watched| watched.bordered)?;
         let step = step_between(pair);
-        let options = self.options.newton;
+        let length = newton.norm().length(step.before.scale, &step.difference());
+        let options = |width: f64| NewtonOptions {
+            tolerance: (KNOWN * width * length).min(self.options.newton.tolerance),
+            ..self.options.newton
+        };
         let wanted = problem.vanishing();
-        let turn = locate(problem, newton, step, options, wanted, |problem, at| {
+        let narrowest = options(BESIDE[BESIDE.len() - 1]);
+        let turn = locate(problem, newton, step, narrowest, wanted, |problem, at| {
             problem.slope(at)
         })?;
-        let length = distance(newton, step.before, step.next);
-        let place = distance(newton, step.before, &turn.point) / length;
-        let mut beside = |part: f64| {
-            let point = inside(problem.equations(), newton, step, part, options)?;
+        let along = ArcLength::from(newton, step.before);
+        let place = along.at(&turn.point.u) / along.at(&step.next.u);
+        let mut beside = |part: f64, width: f64| {
+            let part = part + width;
+            let point = inside(
+                problem.equations(),
+                newton,
+                step,
+                part,
+                options(width.abs()),
+            )?;
             Some(Seen::at(problem, &point, pair[0].falls))
         };
         for width in BESIDE {
             let width = width.min(0.5 * place).min(0.5 * (1.0 - place));
-            let found = [beside(place - width)?, beside(place + width)?];
+            let found = [beside(place, -width)?, beside(place, width)?];
             let slopes = found.each_ref().map(|seen| seen.point.parameter_slope());
             if slopes[0] * slopes[1] >= 0.0 {
                 return None;
@@ -330,6 +366,14 @@ impl Engine {
             }
         }
         None
+    }
+}
+
+/// Below this a test function is rounding.
+pub(super) fn noise_of(problem: &dyn BranchProblem, test: Test, at: &Seen) -> f64 {
+    match test {
+        Test::Slope => at.point.narrowness() * problem.vanishing(),
+        Test::Watched(index) => problem.noise(index).max(problem.vanishing()),
     }
 }
 
@@ -355,8 +399,10 @@ fn sought_from(problem: &dyn BranchProblem, seen: &Seen) -> Vec<Sought> {
 
 /// Those of them that are of multipliers.
 fn of_multipliers(problem: &dyn BranchProblem, seen: &Seen) -> Vec<Sought> {
-    let moduli = moduli(problem).map(|index| Sought::Test(Test::Watched(index)));
-    moduli.chain(meetings(problem, seen)).collect()
+    let watched = 0..problem.watched().len();
+    let of_map = watched.filter(|index| problem.is_of_multipliers(*index));
+    let of_map = of_map.map(|index| Sought::Test(Test::Watched(index)));
+    of_map.chain(meetings(problem, seen)).collect()
 }
 
 /// All pairs of multipliers beside each other.
@@ -459,24 +505,38 @@ pub(super) fn step_between([a, b]: [&Seen; 2]) -> Step<'_> {
     }
 }
 
+/// Whether the tangent of an orbit within a step leads along its chord as those of both ends do. Where a branch bends by more than that, which way it
+/// goes at an orbit is not known, and with it the signs of determinants.
+pub(super) fn is_on_way(newton: &Newton, step: Step<'_>, found: &CurvePoint) -> bool {
+    let (chord, scale) = (step.difference(), step.before.scale);
+    let along = |at: &CurvePoint| newton.norm().product(scale, &at.tangent, &chord);
+    let [a, b, here] = [step.before, step.next, found].map(along);
+    here * a > 0.0 && here * b > 0.0
+}
+
 /// Puts an orbit to its place among the parts of a step.
 fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
-    let along = |seen: &Seen| distance(newton, &parts[0].point, &seen.point);
+    let last = &parts[parts.len() - 1];
+    let along = ArcLength::from(newton, &parts[0].point);
+    let whole = along.at(&last.point.u);
+    let along = |seen: &Seen| along.at(&seen.point.u) / whole;
     let place = along(&found);
     let next = parts.iter().position(|part| along(part) > place);
     parts.insert(next.unwrap_or(parts.len() - 1).max(1), found);
 }
 
-/// How far a point is behind another one, along the tangent there.
+/// How far a point is behind another one.
 pub(super) fn distance(newton: &Newton, a: &CurvePoint, b: &CurvePoint) -> f64 {
-    let step = Step { before: a, next: b };
-    newton
-        .norm()
-        .product(a.scale, &a.tangent, &step.difference())
+    ArcLength::from(newton, a).at(&b.u)
 }
 
-/// Where (1) comes down lowest in an interval, below zero, between known heights that are not too close.
-pub(super) fn in_doubt(known: &[Height], [from, to]: [f64; 2], close: f64) -> Option<f64> {
+/// Where (1), or (2) if there may be kinks, comes down lowest in an interval, below zero, between known heights that are not too close.
+pub(super) fn in_doubt(
+    known: &[Height],
+    [from, to]: [f64; 2],
+    close: f64,
+    kinks: bool,
+) -> Option<f64> {
     let differences: Vec<f64> = known.windows(3).map(second_difference).collect();
     let mut deepest: Option<Height> = None;
     for (i, pair) in known.windows(2).enumerate() {
@@ -488,22 +548,51 @@ pub(super) fn in_doubt(known: &[Height], [from, to]: [f64; 2], close: f64) -> Op
         let beside = beside.into_iter().flatten();
         let differences = beside.filter_map(|index| differences.get(index));
         let largest = differences.fold(0.0, |largest: f64, c| largest.max(c.abs()));
-        let lowest = lowest_between(a, b, TRUSTED * largest);
-        let lower = |other: &Height| lowest.height < other.height;
-        if lowest.height < 0.0 && deepest.as_ref().is_none_or(lower) {
-            let aside = ASIDE * (b.place - a.place);
-            let place = lowest.place.clamp(a.place + aside, b.place - aside);
-            deepest = Some(Height { place, ..lowest });
+        let lowest = [
+            Some(lowest_between(a, b, TRUSTED * largest)),
+            below_chords(known, i).filter(|_| kinks),
+        ];
+        for lowest in lowest.into_iter().flatten() {
+            let lower = |other: &Height| lowest.height < other.height;
+            if lowest.height < 0.0 && deepest.as_ref().is_none_or(lower) {
+                let aside = ASIDE * (b.place - a.place);
+                let place = lowest.place.clamp(a.place + aside, b.place - aside);
+                deepest = Some(Height { place, ..lowest });
+            }
         }
     }
     deepest.map(|deepest| deepest.place)
 }
 
+/// Slope from one height to the next.
+fn chord(pair: &[Height]) -> f64 {
+    (pair[1].height - pair[0].height) / (pair[1].place - pair[0].place)
+}
+
 /// Second divided difference of three heights.
 fn second_difference(known: &[Height]) -> f64 {
-    let slope = |a: &Height, b: &Height| (b.height - a.height) / (b.place - a.place);
-    let (first, second) = (slope(&known[0], &known[1]), slope(&known[1], &known[2]));
-    (second - first) / (known[2].place - known[0].place)
+    (chord(&known[1..]) - chord(&known[..2])) / (known[2].place - known[0].place)
+}
+
+/// The lowest place of (2) between a height and the next one. Where one chord alone is known, that is half of the way that it is below zero.
+fn below_chords(known: &[Height], i: usize) -> Option<Height> {
+    let (a, b) = (known[i], known[i + 1]);
+    let l = b.place - a.place;
+    let before = i.checked_sub(1).map(|first| chord(&known[first..=i]));
+    let behind = known.get(i + 1..i + 3).map(chord);
+    let (s, height) = match (before, behind) {
+        (Some(m), Some(n)) => {
+            let s = (b.height - a.height - n * l) / (m - n);
+            (s, a.height + m * s)
+        }
+        (Some(m), None) => (0.5 * (l - a.height / m), 0.5 * (a.height + m * l)),
+        (None, Some(n)) => (0.5 * (l - b.height / n), 0.5 * (b.height - n * l)),
+        (None, None) => return None,
+    };
+    (s > 0.0 && s < l).then_some(Height {
+        place: a.place + s,
+        height,
+    })
 }
 
 /// The lowest place of (1) inside an interval; one of its ends if it falls or rises all along.
@@ -520,5 +609,49 @@ fn lowest_between(a: Height, b: Height, c: f64) -> Height {
         a
     } else {
         b
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where a function is found below zero between the last two of three points, or else the number of orbits that were looked at.
+    fn below(f: impl Fn(f64) -> f64, places: [f64; 3]) -> Result<f64, usize> {
+        let at = |place: f64| Height {
+            place,
+            height: f(place),
+        };
+        let mut known: Vec<Height> = places.map(at).into();
+        for looks in 0..LOOKS {
+            let step = [places[1], places[2]];
+            let Some(place) = in_doubt(&known, step, CLOSE * (places[2] - places[1]), true) else {
+                return Err(looks);
+            };
+            if f(place) < 0.0 {
+                return Ok(place);
+            }
+            let next = known.iter().position(|other| other.place > place).unwrap();
+            known.insert(next, at(place));
+        }
+        Err(LOOKS)
+    }
+
+    /// Twice the period of a gear: the function falls steeply to a touch just before the last point, and rises from there. A second difference
+    /// of three points is less than a third of what there is at the touch.
+    #[test]
+    fn a_kink_hides_no_pair_of_zeros() {
+        let kink =
+            |s: f64| (1.15 - 1.6 * s).max(0.17 + 1.1 * (s - 1.0)) + 0.4 * (s * s - s).max(0.0);
+        let points = [-1.2, 0.0, 1.0];
+        let found = below(kink, points).unwrap();
+        assert!((0.7..0.9).contains(&found), "{found}");
+        assert!(below(|s| kink(s) + 0.4, points).is_err());
+    }
+
+    /// What halves from point to point leads to zero at the next one, and no further.
+    #[test]
+    fn what_decays_is_not_looked_at() {
+        assert_eq!(below(|s| (-0.6 * s).exp(), [0.0, 1.0, 2.0]), Err(0));
     }
 }

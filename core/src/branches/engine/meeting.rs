@@ -56,16 +56,35 @@ impl Meeting {
         TestValue::plain(s * s * (s * s - p) - 0.25 * q * q)
     }
 
-    /// The two that are nearest together: where both have moved the same way, one may be the nearest of each.
+    /// The two that are nearest together: where both have moved the same way, one may be the nearest of each, and another one is that of one of
+    /// them then.
     fn nearest(&self, among: &[Complex<f64>]) -> Option<[Complex<f64>; 2]> {
-        let [one, other] = self.pairs;
-        let places = (0..among.len()).flat_map(|i| (0..among.len()).map(move |j| [i, j]));
-        let apart = |[i, j]: &[usize; 2]| (among[*i] - one).norm() + (among[*j] - other).norm();
+        let [ones, others] = self.pairs.map(|pair| nearest_two(among, pair));
+        let places = ones.into_iter().flatten();
+        let places = places.flat_map(|i| others.into_iter().flatten().map(move |j| [i, j]));
+        let apart = |[i, j]: &[usize; 2]| {
+            let [one, other] = self.pairs;
+            (among[*i] - one).norm() + (among[*j] - other).norm()
+        };
         places
             .filter(|[i, j]| i != j)
             .min_by(|x, y| apart(x).total_cmp(&apart(y)))
             .map(|places| places.map(|place| among[place]))
     }
+}
+
+/// The places of the nearest and the second nearest to one.
+fn nearest_two(among: &[Complex<f64>], to: Complex<f64>) -> [Option<usize>; 2] {
+    let apart = |place: usize| (among[place] - to).norm();
+    let mut found = [None, None];
+    for place in 0..among.len() {
+        if found[0].is_none_or(|first| apart(place) < apart(first)) {
+            found = [Some(place), found[0]];
+        } else if found[1].is_none_or(|second| apart(place) < apart(second)) {
+            found[1] = Some(place);
+        }
+    }
+    found
 }
 
 #[cfg(test)]
@@ -84,6 +103,29 @@ mod tests {
             values: Vec::new(),
             pairs: Some(pairs.to_vec()),
             falls: None,
+        }
+    }
+
+    /// Of all places, one by one.
+    #[test]
+    fn the_nearest_two_are_those_of_all() {
+        let number = |i: u64| (0.7 * (i * i % 1009) as f64).sin();
+        for count in 0..7 {
+            for case in 0..40 {
+                let z = |i: u64| Complex::new(number(91 * case + i), number(57 * case + 3 * i + 1));
+                let among: Vec<_> = (0..count).map(|i| z(i + 2)).collect();
+                let (pairs, noise) = ([z(0), 0.9 * z(0) + 0.1 * z(1)], 0.0);
+                let apart = |i: usize, j: usize| {
+                    (among[i] - pairs[0]).norm() + (among[j] - pairs[1]).norm()
+                };
+                let count = among.len();
+                let places = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+                let others = places.filter(|(i, j)| i != j);
+                let least = others.map(|(i, j)| apart(i, j)).min_by(f64::total_cmp);
+                let found = Meeting { pairs, noise }.nearest(&among);
+                let found = found.map(|[a, b]| (a - pairs[0]).norm() + (b - pairs[1]).norm());
+                assert_eq!(found, least);
+            }
         }
     }
 

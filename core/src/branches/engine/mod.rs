@@ -17,13 +17,14 @@
 //! 4. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
 //! 5. What events that were located [hide](counted) is looked for beside them.
 //! 6. A step onto a branch of more regular orbits is made again up to shortly before the [joint] of both.
-//! 7. Where an extreme of a gap goes through a level, the orbit that [touches](grazing) it is located, and what test functions show there and at no end
-//!    of the step is recorded.
+//! 7. Where an extreme of a gap goes through a level, the orbit that [touches](grazing) it is located, and what test functions show there, or right
+//!    [behind](behind_touch) it, and at no end of the step is recorded.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions); Keller
 //! (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (the bordered determinant).
 
 mod back;
+mod behind_touch;
 mod corner;
 mod corner_search;
 mod counted;
@@ -106,6 +107,8 @@ struct Engine {
     plain: Option<Gaps>,
     /// Where levels are touched in the last step.
     touched: Vec<f64>,
+    /// The last of them, if its level is crossed at the end of that step.
+    crossed: Option<Seen>,
     /// Touches at which the branch or its multipliers bend, so far.
     bent: Vec<Bent>,
     /// The last step was divided in a narrow place of a law.
@@ -254,6 +257,7 @@ impl Engine {
             gaps: Vec::new(),
             plain: None,
             touched: Vec::new(),
+            crossed: None,
             bent: Vec::new(),
             doubted: false,
             unlocated: Vec::new(),

@@ -32,6 +32,9 @@ pub(crate) struct Walk {
     /// Where levels are touched in the step before.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     touched: Vec<f64>,
+    /// The last of them, if its level is crossed from there on.
+    #[cfg_attr(feature = "serde", serde(default))]
+    crossed: Option<Seen>,
     /// Touches at which the branch bends.
     #[cfg_attr(feature = "serde", serde(default))]
     bent: Vec<Bent>,
@@ -99,7 +102,8 @@ impl Walk {
         };
         let is_point = |point: &CurvePoint| is_vector(&point.u) && is_vector(&point.tangent);
         let points = [point, first].into_iter().chain(previous);
-        let points = points.chain(self.seen.iter().map(|seen| &seen.point));
+        let seen = self.seen.iter().chain(&self.crossed);
+        let points = points.chain(seen.map(|seen| &seen.point));
         let are_points = points.into_iter().all(is_point);
         are_points
             && before.iter().all(is_vector)
@@ -120,7 +124,8 @@ impl Walk {
     /// Whether its points have so many test functions, and nothing was divided for another one.
     pub(crate) fn tests(&self, tests: usize) -> bool {
         let is_one = |test: &Test| !matches!(test, Test::Watched(index) if *index >= tests);
-        self.seen.iter().all(|seen| seen.values.len() == tests)
+        let mut seen = self.seen.iter().chain(&self.crossed);
+        seen.all(|seen| seen.values.len() == tests)
             && self.former.iter().all(|former| former.is_possible(tests))
             && self.divided.iter().all(|(_, test)| is_one(test))
     }
@@ -140,6 +145,7 @@ impl Engine {
             decided: self.decided,
             looked: self.looked.clone(),
             touched: self.touched.clone(),
+            crossed: self.crossed.clone(),
             bent: self.bent.clone(),
             joint: self.joint.clone(),
             kept: Places::all(kept),
@@ -157,6 +163,7 @@ impl Engine {
             decided: walk.decided,
             looked: walk.looked,
             touched: walk.touched,
+            crossed: walk.crossed,
             bent: walk.bent,
             joint: walk.joint,
             ..Self::new(options)

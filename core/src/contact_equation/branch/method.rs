@@ -314,6 +314,10 @@ impl BranchProblem for ContactBranch<'_, '_> {
         watches.then(|| moduli::pairs(&self.tests(at).multipliers))
     }
 
+    fn is_of_multipliers(&self, index: usize) -> bool {
+        !self.watched[index].bordered
+    }
+
     fn vanishing(&self) -> f64 {
         VANISHING
     }

@@ -3,6 +3,7 @@
 mod asked;
 mod backbone;
 mod balance;
+mod behind_touch;
 mod by_contact_equation;
 mod cascade;
 mod codimension;

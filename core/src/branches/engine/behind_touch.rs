@@ -1,0 +1,158 @@
+//! What test functions do right behind an orbit that touches a level.
+//!
+//! On the side where the level is crossed the time in contact grows as the root of the distance from the touch, and with it the map over a period,
+//! if the slope of the force jumps. So test functions are smooth in
+//!
+//! ```text
+//! r = (s / l)^(1/2)                                                                                            (1)
+//! ```
+//!
+//! of the way `s` along the branch, in units `l` of that to the end of the step, and may pass zero twice in a part of it that is small in `s`. Orbits
+//! are computed at two places in `r`, and where between these (1) or (2) of [`inside`](super::inside) come down to zero in `r`. So they are
+//! in the step behind that one, since the first may end next to the touch.
+//!
+//! Source: Nordmark (1991), Non-periodic motion caused by grazing incidence in an impact oscillator, Journal of Sound and Vibration 145 (the root);
+//! di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2.
+
+use super::Engine;
+use super::inside::{CLOSE, Height, LOOKS, distance, in_doubt, is_on_way, noise_of, step_between};
+use super::seen::Seen;
+use crate::branches::problem::{BranchProblem, Test};
+use crate::continuation::locate::{ArcLength, inside};
+use crate::continuation::newton::{Newton, NewtonOptions};
+
+/// Where orbits are computed in any case, by (1).
+const PLACES: [f64; 2] = [0.3, 0.65];
+
+/// A part of the way from a touch on, and the orbits known on it.
+struct Behind<'s> {
+    /// Where the part begins, which may be the touch, and ends.
+    ends: [&'s Seen; 2],
+    /// `s` and `r` there.
+    ways: [f64; 2],
+    range: [f64; 2],
+    /// From the touch on, with `r`.
+    known: Vec<(f64, Seen)>,
+    options: NewtonOptions,
+}
+
+impl Engine {
+    /// Orbits between a touch and the end of its step at which the level is crossed: some of them, and what they show that both ends do not.
+    pub(super) fn behind_touch(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        touch: &Seen,
+        end: &Seen,
+    ) -> Vec<Seen> {
+        let mut behind = Behind {
+            ends: [touch, end],
+            ways: [0.0, distance(newton, &touch.point, &end.point)],
+            range: [0.0, 1.0],
+            known: vec![(0.0, touch.clone()), (1.0, end.clone())],
+            options: self.options.newton,
+        };
+        let contraction = newton.contraction();
+        for place in PLACES {
+            behind.add(problem, newton, place);
+        }
+        behind.seek_all(problem, newton);
+        // What is only looked at leaves the walk as it is.
+        newton.remember_contraction(contraction);
+        behind.found()
+    }
+
+    /// The same between the end of that step and the other end of the one behind it, as far as both and the touch tell.
+    pub(super) fn farther_behind(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        touch: &Seen,
+        ends: [&Seen; 2],
+    ) -> Vec<Seen> {
+        let length = touch.point.u.len();
+        if ends.iter().any(|end| end.point.u.len() != length) {
+            return Vec::new();
+        }
+        let along = ArcLength::from(newton, &touch.point);
+        let ways = ends.map(|end| along.at(&end.point.u));
+        let part = ways[0] / ways[1];
+        let goes_on = part > 0.0 && part < 1.0;
+        if !goes_on {
+            return Vec::new();
+        }
+        let middle = part.sqrt();
+        let known = [(0.0, touch), (middle, ends[0]), (1.0, ends[1])];
+        let mut behind = Behind {
+            ends,
+            ways,
+            range: [middle, 1.0],
+            known: known.map(|(r, seen)| (r, seen.clone())).into(),
+            options: self.options.newton,
+        };
+        let contraction = newton.contraction();
+        behind.seek_all(problem, newton);
+        newton.remember_contraction(contraction);
+        behind.found()
+    }
+}
+
+impl Behind<'_> {
+    /// Computes the orbit at a place. Says whether there is one.
+    fn add(&mut self, problem: &mut dyn BranchProblem, newton: &mut Newton, place: f64) -> bool {
+        let step = step_between(self.ends);
+        let [from, to] = self.ways;
+        let part = (place * place * to - from) / (to - from);
+        let Some(point) = inside(problem.equations(), newton, step, part, self.options) else {
+            return false;
+        };
+        if !is_on_way(newton, step, &point) {
+            return false;
+        }
+        let seen = Seen::at(problem, &point, self.ends[0].falls);
+        let next = self.known.iter().position(|(other, _)| *other > place);
+        self.known.insert(next.unwrap_or(1), (place, seen));
+        true
+    }
+
+    /// Adds orbits where a function of multipliers has another sign than at both ends, if there may be one.
+    fn seek_all(&mut self, problem: &mut dyn BranchProblem, newton: &mut Newton) {
+        let watched = 0..problem.watched().len();
+        let of_map: Vec<usize> = watched
+            .filter(|of| problem.is_of_multipliers(*of))
+            .collect();
+        for test in of_map.into_iter().map(Test::Watched) {
+            let noise = noise_of(problem, test, self.ends[0]);
+            for _ in 0..LOOKS {
+                let heights = self.heights(test, noise);
+                let place = heights.and_then(|known| in_doubt(&known, self.range, CLOSE, true));
+                if !place.is_some_and(|place| self.add(problem, newton, place)) {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// How far a test function is above zero at all places, if it is so everywhere.
+    fn heights(&self, test: Test, noise: f64) -> Option<Vec<Height>> {
+        let values = self.known.iter().map(|(_, seen)| seen.value(test));
+        let reference = values.clone().map(|value| value.exponent);
+        let reference = reference.fold(f64::NEG_INFINITY, f64::max);
+        let sign = self.ends[0].value(test).mantissa.signum();
+        let places = self.known.iter().map(|(place, _)| *place);
+        let heights = places.zip(values).map(|(place, value)| Height {
+            place,
+            height: sign * value.relative_to(reference),
+        });
+        let heights: Vec<Height> = heights.collect();
+        let above = heights.iter().all(|known| known.height > noise);
+        above.then_some(heights)
+    }
+
+    /// What was computed.
+    fn found(self) -> Vec<Seen> {
+        let [from, to] = self.range;
+        let inner = self.known.into_iter().filter(|(r, _)| *r > from && *r < to);
+        inner.map(|(_, seen)| seen).collect()
+    }
+}

@@ -1,0 +1,113 @@
+//! Two events of a kind within one step, beside the touch of a level from which multipliers go as a root: the branch is one whichever way it is
+//! followed, by whatever method.
+
+use hertzian::structure::{Contact, DMatrix, Structure};
+use hertzian::{Branch, ContactEquation, EventKind, FrequencyResponse, Shooting, System};
+
+hertzian::law! {
+    /// Elastic stop
+    pub Elastic(gap, k) { gap > 0 => k*gap, else => 0 }
+}
+
+hertzian::oscillator! {
+    /// Gears whose stiffness changes with the mesh, with an error of their teeth
+    Gears(x) {
+        law mesh(gap) { gap > 1.2 => gap - 1.2, -1.2 <= gap <= 1.2 => 0, gap < -1.2 => gap + 1.2 }
+        ddot(x) + 0.056*dot(x) + (1 + 0.37*cos(omega*t))*mesh(x) = 0.11 + 0.27*omega^2*cos(omega*t);
+    }
+}
+
+/// Masses in a row, the first of which is held, with stops of a mass: its number, the side, stiffness and distance.
+fn chain(masses: usize, ratio: f64, drive: f64, stops: &[(usize, f64, f64, f64)]) -> Structure {
+    let stiffness = DMatrix::from_fn(masses, masses, |i, j| match i.abs_diff(j) {
+        0 if i == 0 => 1.0,
+        0 => 2.0,
+        1 => -1.0,
+        _ => 0.0,
+    });
+    let damping = ratio * &stiffness;
+    let structure = Structure::of(&DMatrix::identity(masses, masses), &damping, &stiffness);
+    let mut structure = structure.cosine(masses - 1, 1, drive);
+    for &(mass, side, stiffness, distance) in stops {
+        let mut direction = vec![0.0; masses];
+        direction[mass] = side;
+        let contact = Contact::new(Elastic).arguments([stiffness]);
+        structure = structure.contact(contact.direction(direction).offset(distance));
+    }
+    structure.build().unwrap()
+}
+
+/// Places of a kind of event between two values, in their order.
+fn places(branch: &Branch, kind: EventKind, [from, to]: [f64; 2]) -> Vec<(f64, f64)> {
+    let events = branch.events(kind).filter(|event| {
+        let value = event.point.value;
+        value > from && value < to
+    });
+    let mut found: Vec<_> = events
+        .map(|event| (event.point.value, event.error))
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found
+}
+
+/// Both methods in both directions find these places.
+fn finds(system: &dyn System, [from, to]: [f64; 2], kind: EventKind, wanted: [f64; 2]) {
+    let between = [wanted[0] - 1e-5, wanted[1] + 1e-5];
+    for ends in [[from, to], [to, from]] {
+        let request = FrequencyResponse::of(system).from(ends[0]).to(ends[1]);
+        let by_contact_equation = request.clone().by(ContactEquation::new()).run().unwrap();
+        let by_shooting = request.by(Shooting::new()).run().unwrap();
+        let [one, other] =
+            [&by_contact_equation, &by_shooting].map(|branch| places(branch, kind, between));
+        assert_eq!(
+            (one.len(), other.len()),
+            (2, 2),
+            "{ends:?}: {one:?} {other:?}"
+        );
+        for ((one, other), wanted) in one.iter().zip(&other).zip(wanted) {
+            let off = (one.0 - other.0).abs();
+            assert!(off <= 3.0 * (one.1 + other.1) + 1e-14, "{ends:?}: {off:e}");
+            assert!((one.0 - wanted).abs() < 1e-7, "{ends:?}: {}", one.0);
+        }
+    }
+}
+
+/// Backwards a step passes both doublings and the touch at 0.6353; what doubles twice falls steeply to the touch and rises slowly from there.
+#[test]
+fn doublings_of_a_gear() {
+    let places = [0.636_391_4, 0.640_926_5];
+    finds(&Gears {}, [0.4, 2.3], EventKind::PeriodDoubling, places);
+}
+
+/// The multiplier rises from 0.2 at the touch at 0.31967 to more than one and is 0.44 at the end of the step.
+#[test]
+fn broken_symmetry_between_two_stops() {
+    let stops = [(2, 1.0, 8.6, 0.69), (2, -1.0, 8.6, 0.69)];
+    let structure = chain(3, 0.089, 0.43, &stops);
+    let places = [0.320_833_1, 0.321_179_3];
+    finds(&structure, [0.3, 0.36], EventKind::SymmetryBreaking, places);
+}
+
+/// A pair of multipliers leaves the unit circle and comes back, while a gap that is nearly straight there touches its level.
+#[test]
+fn motions_of_two_frequencies_between_two_stops() {
+    let stops = [(2, 1.0, 26.0, 0.86), (2, -1.0, 26.0, 0.86)];
+    let structure = chain(3, 0.022, 0.31, &stops);
+    let places = [0.427_31, 0.433_07];
+    let kind = EventKind::NeimarkSacker;
+    let request = FrequencyResponse::of(&structure);
+    let mut found = Vec::new();
+    for ends in [[0.3, 1.3], [1.3, 0.3]] {
+        let request = request.clone().from(ends[0]).to(ends[1]);
+        let branch = request.by(Shooting::new()).run().unwrap();
+        for place in places {
+            let near = self::places(&branch, kind, [place - 2e-5, place + 2e-5]);
+            assert_eq!(near.len(), 1, "{ends:?} {place}: {near:?}");
+            found.extend(near);
+        }
+    }
+    for (forwards, backwards) in found[..2].iter().zip(&found[2..]) {
+        let off = (forwards.0 - backwards.0).abs();
+        assert!(off <= 3.0 * (forwards.1 + backwards.1) + 1e-14, "{off:e}");
+    }
+}
