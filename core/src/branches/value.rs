@@ -1,7 +1,8 @@
 //! Solutions of a branch at a value of what it varies.
 //!
 //! Where the branch turns has been located, so that it passes a value at most once between two neighbours among its points and turns.
-//! There the solution is searched along the chord of the two.
+//! There the solution is searched along the chord of the two, from one of them or the other. Where neither leads there, as between orbits of
+//! many contacts that another method has found in longer steps, the orbit half-way is searched first.
 
 use super::branch::Branch;
 use super::point::Point;
@@ -10,6 +11,9 @@ use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::error::Error;
+
+/// The way to a value is halved so often at most.
+const HALVINGS: usize = 5;
 
 /// Points and turns of a branch in their order along it. Each turn comes with the number of points before it.
 pub(crate) fn chain<'p, T>(points: &'p [T], turns: &[(usize, &'p T)]) -> Vec<&'p T> {
@@ -35,15 +39,37 @@ pub(crate) fn turns_at<T>(points: &[T], after: usize, value: f64, of: impl Fn(&T
 /// The orbits of a branch at a value, in its order.
 ///
 /// # Errors
-/// Those of `between`, which finds the orbit between two neighbours.
+/// Those of `between`, which finds the orbit at a value between two neighbours, near the first.
 pub(crate) fn orbits_at(
     branch: &Branch,
     value: f64,
-    between: impl FnMut([&Point; 2]) -> Result<Point, Error>,
+    mut between: impl FnMut([&Point; 2], f64) -> Result<Point, Error>,
     is_same: impl Fn(&Point, &Point) -> bool,
 ) -> Result<Vec<Point>, Error> {
     let chain = chain(&branch.points, &turns(branch));
-    solutions(&chain, value, |point| point.value, between, is_same)
+    let search = |ends: [&Point; 2]| divided(&mut between, ends, value, HALVINGS);
+    solutions(&chain, value, |point| point.value, search, is_same)
+}
+
+/// The orbit at a value between two neighbours, from one of them, or else by way of others.
+fn divided(
+    between: &mut impl FnMut([&Point; 2], f64) -> Result<Point, Error>,
+    [a, b]: [&Point; 2],
+    value: f64,
+    halvings: usize,
+) -> Result<Point, Error> {
+    let reason = match between([a, b], value) {
+        Err(reason) if halvings > 0 => reason,
+        found => return found,
+    };
+    if let Ok(found) = between([b, a], value) {
+        return Ok(found);
+    }
+    let middle = 0.5 * (a.value + value);
+    let Ok(middle) = divided(between, [a, b], middle, halvings - 1) else {
+        return Err(reason);
+    };
+    divided(between, [&middle, b], value, halvings - 1).map_err(|_| reason)
 }
 
 /// Where a branch turns, each with the number of points before it, in order along the branch. A step with a fold has other events whose values

@@ -30,7 +30,12 @@ pub(crate) fn at(
     value: f64,
 ) -> Result<Vec<Point>, Error> {
     let same = |a: &Point, b: &Point| is_same(a, b);
-    orbits_at(branch, value, |ends| between(problem, ends, value), same)
+    orbits_at(
+        branch,
+        value,
+        |ends, value| between(problem, ends, value),
+        same,
+    )
 }
 
 fn between(problem: &ShootingProblem, [a, b]: [&Point; 2], value: f64) -> Result<Point, Error> {

@@ -11,8 +11,10 @@
 
 use super::Engine;
 use super::grazing_search::{Approach, Reached};
+use super::seen::{Seen, changes};
+use super::zero::is_crossing;
 use crate::branches::extreme::{Extreme, Passage, is_copy, passed};
-use crate::branches::problem::BranchProblem;
+use crate::branches::problem::{BranchProblem, Change, Test};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::Newton;
 use crate::numeric::linear::dot;
@@ -41,7 +43,7 @@ impl Engine {
         let slopes = [&before, next].map(|at| at.known_slope(vanishing));
         let same_way = matches!(slopes, [Some(here), Some(there)] if here * there > 0.0);
         let gaps = [&before, next].map(|at| self.gaps_at(problem, at));
-        let ([Some(here), Some(there)], true) = (gaps, same_way) else {
+        let [Some(here), Some(there)] = gaps else {
             return false;
         };
         let step = Step {
@@ -51,7 +53,13 @@ impl Engine {
         let mut newton = Newton::new(problem.equations());
         let length = newton.norm().length(before.scale, &step.difference());
         let through = without_copies(passed(&here.extremes, &there.extremes));
+        if length > SHORTEST && !through.is_empty() && self.jumps(problem, &mut newton, next) {
+            problem.count(&newton);
+            self.back = Some((before, AGAIN * length));
+            return true;
+        }
         let in_doubt = length > SHORTEST
+            && same_way
             && match &through[..] {
                 [] => false,
                 [one] => is_expected_far(problem, step, one, length),
@@ -73,6 +81,33 @@ impl Engine {
             self.back = Some((before, AGAIN * length));
         }
         leaps
+    }
+
+    /// Whether the branch turns or is crossed between the last point and another one at no place that can be found: test functions jump from one
+    /// limb to another.
+    fn jumps(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        next: &CurvePoint,
+    ) -> bool {
+        let Some(last) = self.seen.last().cloned() else {
+            return false;
+        };
+        let next = Seen::at(problem, next, self.falls);
+        let found = changes(problem, &last, &next);
+        let of_branch =
+            |change: &Change| change.test == Test::Slope || is_crossing(problem, *change);
+        let found: Vec<Change> = found.into_iter().filter(of_branch).collect();
+            eprintln!(
+                "in doubt {} {} {found:?}",
+                last.point.parameter(),
+                next.point.parameter()
+            );
+        }
+        found
+            .into_iter()
+            .any(|change| self.jumps_at(problem, newton, [&last, &next], change))
     }
 
     /// The orbit at which an extreme touches its level.

@@ -83,6 +83,41 @@ impl Engine {
     }
 }
 
+impl Engine {
+    /// Whether a test function jumps where it changes its sign between two points, or no place is found.
+    pub(super) fn jumps_at(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        [a, b]: [&Seen; 2],
+        change: Change,
+    ) -> bool {
+        let search = Search {
+            step: Step {
+                before: &a.point,
+                next: &b.point,
+            },
+            change,
+            ends: [a, b].map(|seen| seen.value(change.test)),
+            after: problem.points(),
+            told: true,
+            options: self.options.newton,
+        };
+        let Some(root) = search.root(problem, newton) else {
+            return true;
+        };
+            eprintln!(
+                "  root {} {:?}",
+                root.located.point.parameter(),
+                (root.located.test, root.located.vanishes, root.located.jump)
+            );
+        }
+        !(problem.vanishes(change, &root.located)
+            || search.is_smooth_crossing(problem, &root.located)
+            || search.is_steep(problem, &root.located, true))
+    }
+}
+
 impl<'s> Search<'s> {
     /// For the branch point that a step passed over onto a branch of more regular orbits, along which `other` is behind it.
     pub(crate) fn of_joint(
