@@ -92,7 +92,11 @@ impl Engine {
         let mut index = 0;
         while index + 1 < parts.len() {
             let pair = [&parts[index], &parts[index + 1]];
-            if let Some(beside) = self.beside_turn(problem, newton, pair) {
+            // What is only looked at leaves the walk as it is.
+            let contraction = newton.contraction();
+            let beside = self.beside_turn(problem, newton, pair);
+            newton.remember_contraction(contraction);
+            if let Some(beside) = beside {
                 parts.splice(index + 1..=index, beside);
                 index += 2;
             }

@@ -6,6 +6,8 @@
 //! each of them a gap is on the side of its level that belongs to the order of the values. Otherwise the branch has turned, and the step
 //! is made again, shorter.
 //!
+//! The same where a gap passes its level and the branch turns, or is crossed, at no place that can be found: the step leads to another limb there.
+//!
 //! Where one gap alone passes a level, the orbit is looked for if the distance from the level, a linear form of the orbit, says that it
 //! is not within the step, or hardly.
 
@@ -95,16 +97,8 @@ impl Engine {
             return false;
         };
         let next = Seen::at(problem, next, self.falls);
-        let found = changes(problem, &last, &next);
-        let of_branch =
-            |change: &Change| change.test == Test::Slope || is_crossing(problem, *change);
-        let found: Vec<Change> = found.into_iter().filter(of_branch).collect();
-            eprintln!(
-                "in doubt {} {} {found:?}",
-                last.point.parameter(),
-                next.point.parameter()
-            );
-        }
+        let mut found = changes(problem, &last, &next);
+        found.retain(|change| change.test == Test::Slope || is_crossing(problem, *change));
         found
             .into_iter()
             .any(|change| self.jumps_at(problem, newton, [&last, &next], change))

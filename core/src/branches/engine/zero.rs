@@ -1,6 +1,7 @@
 //! Locates where a test function vanishes between two points, and has the orbit there read.
 
 use super::Engine;
+use super::inside::step_between;
 use super::seen::Seen;
 use crate::branches::extreme::{Bend, passed};
 use crate::branches::problem::{BranchProblem, Change, Root, Test, TestValue, Zero, ZeroOutcome};
@@ -13,6 +14,8 @@ use crate::event::{EventKind, Turn};
 
 /// Of a test function that is steep, and does not jump, at most this part is left beside its zero.
 const STEEP: f64 = 1e-3;
+/// Where a test function is left at its zero, orbits are known to this part of the scale: it may be what Newton's method leaves.
+const EXACT: f64 = 1e-12;
 /// Where branches cross, at most this part of a test function is left.
 const CROSSED: f64 = 1e-3;
 
@@ -57,15 +60,8 @@ impl Engine {
         after: usize,
     ) -> Recorded {
         let search = Search {
-            step: Step {
-                before: &a.point,
-                next: &b.point,
-            },
-            change,
-            ends: [a, b].map(|seen| seen.value(change.test)),
-            after,
             told,
-            options: self.options.newton,
+            ..self.search_between([a, b], change, after)
         };
         let (recorded, at) = search.recorded(problem, newton);
         match recorded {
@@ -81,37 +77,36 @@ impl Engine {
         }
         recorded
     }
-}
 
-impl Engine {
+    /// A change of sign between two points.
+    fn search_between<'s>(
+        &self,
+        [a, b]: [&'s Seen; 2],
+        change: Change,
+        after: usize,
+    ) -> Search<'s> {
+        Search {
+            step: step_between([a, b]),
+            change,
+            ends: [a, b].map(|seen| seen.value(change.test)),
+            after,
+            told: true,
+            options: self.options.newton,
+        }
+    }
+
     /// Whether a test function jumps where it changes its sign between two points, or no place is found.
     pub(super) fn jumps_at(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
-        [a, b]: [&Seen; 2],
+        pair: [&Seen; 2],
         change: Change,
     ) -> bool {
-        let search = Search {
-            step: Step {
-                before: &a.point,
-                next: &b.point,
-            },
-            change,
-            ends: [a, b].map(|seen| seen.value(change.test)),
-            after: problem.points(),
-            told: true,
-            options: self.options.newton,
-        };
+        let search = self.search_between(pair, change, problem.points());
         let Some(root) = search.root(problem, newton) else {
             return true;
         };
-            eprintln!(
-                "  root {} {:?}",
-                root.located.point.parameter(),
-                (root.located.test, root.located.vanishes, root.located.jump)
-            );
-        }
         !(problem.vanishes(change, &root.located)
             || search.is_smooth_crossing(problem, &root.located)
             || search.is_steep(problem, &root.located, true))
@@ -224,6 +219,15 @@ impl<'s> Search<'s> {
         slopes.fold(f64::INFINITY, f64::min)
     }
 
+    /// The same with orbits that are known better.
+    fn exactly(&self) -> Self {
+        let options = NewtonOptions {
+            tolerance: self.options.tolerance.min(EXACT),
+            ..self.options
+        };
+        Self { options, ..*self }
+    }
+
     /// What became of the zero, and where the function jumps instead. It may be `steep` where no level is a corner.
     fn search(
         &self,
@@ -235,6 +239,12 @@ impl<'s> Search<'s> {
             return (ZeroOutcome::Unread, None);
         };
         let mut vanishes = problem.vanishes(self.change, &root.located);
+        if !vanishes && !is_crossing(problem, self.change) {
+            let exact = self.exactly().root(problem, newton);
+            let exact = exact.filter(|exact| problem.vanishes(self.change, &exact.located));
+            vanishes = exact.is_some();
+            root = exact.unwrap_or(root);
+        }
         if !vanishes && self.is_smooth_crossing(problem, &root.located) {
             root.error += self.left_of_crossing(&root.located);
             vanishes = true;
