@@ -96,7 +96,7 @@ impl Whole {
     fn add_equations(&mut self, case: &Case, index: usize, count: usize) {
         let first = self.first(case, index);
         for row in 0..count {
-            let entries: Vec<f64> = (0..count + 2 * case.pairs + case.others + 1)
+            let entries: Vec<f64> = (0..=count + 2 * case.pairs + case.others)
                 .map(|_| self.next())
                 .collect();
             let [own, by_states, direct] = self.links.link_mut(index).equation_mut(row);
