@@ -53,6 +53,7 @@ impl Harmonics {
                 .collect(),
             group: 2 * coordinates,
             chained: 0,
+            pairs: 0,
         }
     }
 }

@@ -1,5 +1,5 @@
 //! The Jacobian of a continuation problem: dense in a core of unknowns, block triangular in a tail, with a border; or with a
-//! [chain](super::chain) of unknowns that are eliminated before all others.
+//! [chain](super::chain) of unknowns that are eliminated before all others, or with [pairs](super::arrow) that are.
 //!
 //! High harmonics of an oscillator are almost free masses: their diagonal `(k Omega)^2 M` outweighs what couples them to each
 //! other and to the low ones. The tail `y` has its diagonal blocks `D`, and what the core `x` does to it,
@@ -18,6 +18,8 @@
 //! Iterative Analysis, chapter 4 (rates of consistently ordered matrices); the division into strongly and weakly coupled
 //! harmonics follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic balance method.
 
+use super::arrow::Arrow;
+use super::arrow::links::PairLinks;
 use super::chain::Chain;
 use crate::numeric::linear::{Lu, Matrix, Singular, dot};
 
@@ -34,6 +36,9 @@ pub struct Partition {
     pub(crate) group: usize,
     /// Unknowns of a chain, which are the last; then there is no tail.
     pub(crate) chained: usize,
+    /// Pairs of unknowns at the beginning that are coupled with each other through all others only: then nothing is dense but what is left
+    /// without them.
+    pub(crate) pairs: usize,
 }
 
 impl Partition {
@@ -55,6 +60,15 @@ impl Partition {
             tail: Vec::new(),
             group: 1,
             chained: 0,
+            pairs: 0,
+        }
+    }
+
+    /// The first unknowns in pairs, all others in what is left without them.
+    pub(crate) fn paired(unknowns: usize, pairs: usize) -> Self {
+        Self {
+            pairs,
+            ..Self::dense(unknowns)
         }
     }
 
@@ -90,15 +104,24 @@ pub struct Jacobian {
     chain: Chain,
     chain_border: Vec<f64>,
     units: Vec<f64>,
+    /// What is in the place of all the others but the units, where there are pairs.
+    arrow: Option<Box<Arrow>>,
 }
 
 impl Jacobian {
     /// Zero, with room for everything.
     pub(crate) fn new(partition: Partition) -> Self {
-        let order = partition.core.len() + 1;
+        let arrow = (partition.pairs > 0)
+            .then(|| Box::new(Arrow::new(partition.pairs, partition.unknowns)));
+        let order = if arrow.is_some() {
+            0
+        } else {
+            partition.core.len() + 1
+        };
         let tail = partition.tail.len();
         let groups = tail / partition.group;
         Self {
+            arrow,
             core: Matrix::zeros(order),
             lu: Lu::new(order),
             groups: (0..groups)
@@ -124,6 +147,9 @@ impl Jacobian {
 
     /// Multiplications of a factorisation, about.
     pub(crate) fn operations(&self) -> u64 {
+        if let Some(arrow) = &self.arrow {
+            return arrow.operations();
+        }
         let cube = |n: usize| (n as u64).pow(3) / 3;
         cube(self.partition.core.len())
             + self.groups.len() as u64 * cube(self.partition.group)
@@ -145,6 +171,13 @@ impl Jacobian {
     /// Takes a chain over: its unknowns are eliminated, and the core is what is left of the other equations.
     pub(crate) fn take_chain(&mut self, chain: &Chain) {
         self.chain.take_over(chain);
+    }
+
+    /// Takes equations with pairs over, whose states are eliminated.
+    pub(crate) fn take_pairs(&mut self, links: &mut PairLinks) {
+        if let Some(arrow) = &mut self.arrow {
+            arrow.take(links);
+        }
     }
 
     /// One group of the tail.
@@ -174,6 +207,9 @@ impl Jacobian {
 
     /// Writes the last row of (1), over the extended unknowns.
     pub(crate) fn set_border(&mut self, values: &[f64]) {
+        if let Some(arrow) = &mut self.arrow {
+            return arrow.set_border(values);
+        }
         let last = self.partition.core.len();
         let row = self.core.row_mut(last);
         gather(row, values, &self.partition.core);
@@ -190,6 +226,10 @@ impl Jacobian {
 
     /// Measures every unknown in its unit, the parameter in the last one.
     pub(crate) fn scale_columns(&mut self, units: &[f64]) {
+        if let Some(arrow) = &mut self.arrow {
+            self.units.copy_from_slice(units);
+            return arrow.scale_columns(units);
+        }
         let (core, tail) = (&self.partition.core, &self.partition.tail);
         let (unknowns, group) = (self.partition.unknowns, self.partition.group);
         let last = core.len();
@@ -220,6 +260,9 @@ impl Jacobian {
     /// # Errors
     /// [`Singular`], with the column in the core, or behind it for a group of the tail.
     pub(crate) fn factorise(&mut self) -> Result<(), Singular> {
+        if let Some(arrow) = &mut self.arrow {
+            return arrow.factorise();
+        }
         if let Some(at) = self.chain.singular() {
             return Err(at);
         }
@@ -247,13 +290,19 @@ impl Jacobian {
 
     /// How large an update of one in every unit makes the equation of the core that it changes least.
     pub(crate) fn smallest_equation(&self) -> f64 {
-        self.lu.smallest_row()
+        match &self.arrow {
+            Some(arrow) => arrow.smallest_equation(),
+            None => self.lu.smallest_row(),
+        }
     }
 
     /// Factorises, and gives the sign of the determinant and the logarithm of its size; the sign is zero where that fails.
     pub(crate) fn determinant(&mut self) -> (f64, f64) {
         if self.factorise().is_err() {
             return (0.0, f64::NEG_INFINITY);
+        }
+        if let Some(arrow) = &self.arrow {
+            return arrow.determinant(&self.units);
         }
         let groups = self.groups.iter().zip(&self.group_lus);
         groups
@@ -266,6 +315,9 @@ impl Jacobian {
 
     /// Solves (1) in place, for an extended vector in the order of the unknowns.
     pub(crate) fn solve(&mut self, vector: &mut [f64]) {
+        if let Some(arrow) = &mut self.arrow {
+            return arrow.solve(vector, &self.units);
+        }
         if self.partition.chained > 0 {
             return self.solve_chained(vector);
         }
@@ -296,6 +348,9 @@ impl Jacobian {
 
     /// Solves the transposed system in place.
     pub(crate) fn solve_transposed(&mut self, vector: &mut [f64]) {
+        if let Some(arrow) = &mut self.arrow {
+            return arrow.solve_transposed(vector, &self.units);
+        }
         if self.partition.chained > 0 {
             return self.solve_chained_transposed(vector);
         }
@@ -459,6 +514,7 @@ mod tests {
             tail: vec![3, 4, 7, 8],
             group: 2,
             chained: 0,
+            pairs: 0,
         };
         for partition in [mixed, Partition::dense(4), Partition::dense(0)] {
             let absent: Vec<usize> = (0..partition.unknowns)
@@ -500,6 +556,7 @@ mod tests {
             tail: vec![1, 2],
             group: 1,
             chained: 0,
+            pairs: 0,
         };
         let mut jacobian = filled(partition);
         jacobian.group_mut(1).row_mut(0)[0] = 0.0;

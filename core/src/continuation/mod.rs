@@ -1,5 +1,6 @@
 //! Following a curve of solutions as one parameter varies. Knows problems, not balances.
 
+pub(crate) mod arrow;
 pub(crate) mod chain;
 pub(crate) mod jacobian;
 pub(crate) mod newton;

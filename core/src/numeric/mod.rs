@@ -8,6 +8,7 @@ pub(crate) mod golden;
 pub(crate) mod linear;
 pub mod power;
 pub(crate) mod roots;
+pub(crate) mod sparse;
 pub(crate) mod spectrum;
 pub(crate) mod triangular;
 

@@ -5,8 +5,10 @@
 
 use nalgebra::DMatrix;
 
-use super::Equations;
+use super::{Derived, Equations};
 use crate::branches::recurrence::SignedPermutation;
+use crate::continuation::jacobian::Jacobian;
+use crate::continuation::problem::Problem;
 use crate::numeric::linear::{Lu, Matrix};
 
 /// Room for both, made when it is first asked for.
@@ -14,6 +16,8 @@ use crate::numeric::linear::{Lu, Matrix};
 pub(in crate::contact_equation) struct Eliminated {
     inner: Option<Solver>,
     whole: Option<Solver>,
+    /// The same where there are pairs.
+    paired: Option<Jacobian>,
 }
 
 #[derive(Debug)]
@@ -74,7 +78,7 @@ impl Equations {
     /// The map (4) of the states until the orbit comes back: positions, and velocities by the frequency. `None` too where the unknowns are
     /// those of no motion, since switches are in another order.
     pub(in crate::contact_equation) fn map(&mut self, u: &[f64]) -> Option<DMatrix<f64>> {
-        self.pass(u, true);
+        self.pass_for(u, Derived::Chained);
         if self.failed || !self.is_in_order() {
             return None;
         }
@@ -102,7 +106,13 @@ impl Equations {
         tangent: &[f64],
     ) -> Option<Vec<f64>> {
         self.compute(u, true);
-        if self.failed || self.chain.singular().is_some() {
+        if self.failed {
+            return None;
+        }
+        if self.pairs.is_some() {
+            return self.across_pairs(tangent);
+        }
+        if self.chain.singular().is_some() {
             return None;
         }
         let told = self.skeleton.told();
@@ -123,6 +133,28 @@ impl Equations {
         step[..told].copy_from_slice(&column[..told]);
         self.chain.back(column, &mut step[told..]);
         step.push(column[told]);
+        step.iter().all(|x| x.is_finite()).then_some(step)
+    }
+
+    /// The same from what the last pass has left where there are pairs.
+    fn across_pairs(&mut self, tangent: &[f64]) -> Option<Vec<f64>> {
+        let (told, unknowns) = (self.skeleton.told(), self.skeleton.unknowns());
+        let partition = self.partition();
+        let pairs = self.pairs.as_deref_mut()?;
+        let jacobian = self.eliminated.paired.as_mut();
+        let jacobian = match jacobian {
+            Some(jacobian) => jacobian,
+            None => self.eliminated.paired.insert(Jacobian::new(partition)),
+        };
+        jacobian.take_pairs(pairs);
+        let mut step = self.residual.clone();
+        step.push(0.0);
+        let mut border = tangent[..told].to_vec();
+        border.resize(unknowns, 0.0);
+        border.push(tangent[tangent.len() - 1]);
+        jacobian.set_border(&border);
+        jacobian.factorise().ok()?;
+        jacobian.solve(&mut step);
         step.iter().all(|x| x.is_finite()).then_some(step)
     }
 }

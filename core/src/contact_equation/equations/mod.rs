@@ -15,7 +15,8 @@
 //! ```
 //!
 //! with the image `S` of the coordinates after which the orbit comes back. Derivatives are carried along; forces are eliminated interval by
-//! interval ([`chain`](crate::continuation::chain)), so that they are those by the states at the beginning and by switches. With `X f` for the integral of (1), where everything is held but the length,
+//! interval ([`chain`](crate::continuation::chain)), so that they are those by the states at the beginning and by switches. Of many modes the
+//! states at the beginning are eliminated instead, mode by mode ([`paired`]). With `X f` for the integral of (1), where everything is held but the length,
 //!
 //! ```text
 //! d(X f)/ds = X f / s + A int_0^(psi s) (psi - t / s) e^(A (psi s - t)) B f dt                                (3)
@@ -34,26 +35,30 @@
 
 mod eliminated;
 pub(super) mod integrals;
+mod paired;
 pub(super) mod pass;
 pub(super) mod pass_results;
 pub(super) mod setting;
+mod sink;
 mod targets;
 mod workspace;
 
 use std::cell::OnceCell;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use self::eliminated::Eliminated;
 use self::pass_results::{Extremes, Image, Passed};
 use self::setting::Setting;
+use self::sink::Sink;
 use self::workspace::Room;
 use super::linear_part::block::{Block, add};
 use super::linear_part::configuration::Configuration;
 use super::linear_part::values::Values;
 use super::skeleton::Skeleton;
-use super::skeleton::interval::Interval;
 use super::skeleton::placement::Told;
-use crate::continuation::chain::Chain;
+use crate::continuation::arrow::links::{Basis, PairLinks};
+use crate::continuation::chain::{Chain, Size};
 use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::problem::Problem;
 
@@ -71,6 +76,16 @@ enum Of {
     Slope,
 }
 
+/// What derivatives a pass makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Derived {
+    Nothing,
+    /// Those by all that are no forces, of which there may be many.
+    Chained,
+    /// Those of [`paired`] equations.
+    Paired,
+}
+
 /// The equations on one skeleton.
 pub(super) struct Equations {
     pub(super) setting: Setting,
@@ -85,11 +100,15 @@ pub(super) struct Equations {
     pub(super) reference: Vec<f64>,
     /// Weight of a phase, and of velocities, in the norm.
     pub(super) size: f64,
+    /// `T` of the linear part, and its inverse.
+    basis: Arc<Basis>,
     /// Residuals; derivatives of those that are not of a force at a node, by the unknowns that are none and the parameter, row by row, when
-    /// forces are eliminated; and how those are.
+    /// forces are eliminated; and how those are. Where there are pairs they are made for the map alone.
     pub(super) residual: Vec<f64>,
     pub(super) matrix: Vec<f64>,
     pub(super) chain: Chain,
+    /// The same with nothing eliminated, where that is cheaper.
+    pairs: Option<Box<PairLinks>>,
     pub(super) eliminated: Eliminated,
     pub(super) passed: Vec<Passed>,
     /// Of the last pass, when they are asked for.
@@ -99,9 +118,9 @@ pub(super) struct Equations {
     /// The last orbit of the branch, and the last one that was found.
     pub(super) known: [Vec<f64>; 2],
     room: Room,
-    /// Unknowns of the last pass, and whether it has made derivatives.
+    /// Unknowns of the last pass, and which derivatives it has made.
     last: Vec<f64>,
-    derived: bool,
+    derived: Derived,
     /// It has the derivatives by the parameter.
     by_parameter: bool,
     column: Vec<f64>,
@@ -121,6 +140,7 @@ impl Equations {
         let values = setting.values(value)?;
         let configurations = setting.configurations(&values, &skeleton)?;
         let mut equations = Self {
+            basis: paired::basis(&values.linear),
             values,
             configurations,
             at: value,
@@ -132,6 +152,7 @@ impl Equations {
             residual: Vec::new(),
             matrix: Vec::new(),
             chain: Chain::default(),
+            pairs: None,
             eliminated: Eliminated::default(),
             passed: Vec::new(),
             extremes: OnceCell::new(),
@@ -139,7 +160,7 @@ impl Equations {
             known: [Vec::new(), Vec::new()],
             room: Room::default(),
             last: Vec::new(),
-            derived: false,
+            derived: Derived::Nothing,
             by_parameter: false,
             column: Vec::new(),
             failed: false,
@@ -157,14 +178,42 @@ impl Equations {
     fn resize(&mut self) {
         let n = self.skeleton.unknowns();
         self.residual = vec![0.0; n];
-        let told = self.skeleton.told();
-        self.matrix = vec![0.0; told * (told + 1)];
-        let counts = self.skeleton.intervals.iter().map(Interval::forces);
-        self.chain = Chain::new(counts, self.skeleton.order, told);
+        self.pairs = paired::links(&self.skeleton).map(Box::new);
         self.eliminated = Eliminated::default();
         self.column = vec![0.0; n];
         self.passed = vec![Passed::default(); self.skeleton.intervals.len()];
         self.room = Room::new(&self.skeleton);
+        if self.pairs.is_none() {
+            self.make_chain();
+        }
+    }
+
+    /// Room for derivatives by all that are no forces.
+    fn make_chain(&mut self) {
+        let told = self.skeleton.told();
+        self.matrix = vec![0.0; told * (told + 1)];
+        let sizes = self.skeleton.intervals.iter().map(|interval| Size {
+            count: interval.forces(),
+            couples: interval.configuration.is_some(),
+        });
+        self.chain = Chain::new(sizes, self.skeleton.order, told);
+        self.room.carry(&self.skeleton);
+    }
+
+    /// Has everything eliminated as if there were few modes.
+    #[cfg(test)]
+    pub(super) fn keep_chain(&mut self) {
+        self.pairs = None;
+        self.make_chain();
+    }
+
+    /// Derivatives as Newton's method needs them.
+    fn usual(&self) -> Derived {
+        if self.pairs.is_some() {
+            Derived::Paired
+        } else {
+            Derived::Chained
+        }
     }
 
     /// Goes over to a value of what is varied. Says whether the system has one there.
@@ -187,6 +236,7 @@ impl Equations {
                 return false;
             };
             (self.values, self.configurations) = (values, configurations);
+            self.basis = paired::basis(&self.values.linear);
         }
         self.at = value;
         true
@@ -194,8 +244,18 @@ impl Equations {
 
     /// Residuals, and their derivatives by the unknowns if asked for. What the last pass has is not computed again.
     pub(super) fn pass(&mut self, u: &[f64], derivatives: bool) {
+        let asked = if derivatives {
+            self.usual()
+        } else {
+            Derived::Nothing
+        };
+        self.pass_for(u, asked);
+    }
+
+    /// The same with derivatives of a kind.
+    fn pass_for(&mut self, u: &[f64], asked: Derived) {
         let known = self.last == u;
-        if known && (self.derived || !derivatives) {
+        if known && (self.derived == asked || asked == Derived::Nothing) {
             return;
         }
         let n = self.skeleton.unknowns();
@@ -210,24 +270,37 @@ impl Equations {
             return;
         }
         self.last.extend_from_slice(u);
-        self.derived = derivatives;
+        self.derived = asked;
         self.by_parameter = false;
-        if derivatives {
-            self.chain.begin();
+        if asked == Derived::Chained && self.matrix.is_empty() {
+            self.make_chain();
         }
-        let skeleton = &self.skeleton;
+        let sign = paired::sign(&self.skeleton).unwrap_or_default();
+        let sink = match (asked, &mut self.pairs) {
+            (Derived::Nothing, _) => Sink::Nowhere,
+            (Derived::Paired, Some(pairs)) => {
+                pairs.begin(&self.basis, sign);
+                Sink::Pairs(pairs)
+            }
+            _ => {
+                self.chain.begin();
+                Sink::Chain {
+                    chain: &mut self.chain,
+                    matrix: &mut self.matrix,
+                }
+            }
+        };
         let omega = self.setting.at_omega(u[n]);
         let mut pass = pass::Pass {
             system: self.setting.system.as_ref(),
             values: &self.values,
             configurations: &self.configurations,
-            skeleton,
+            skeleton: &self.skeleton,
             u,
             omega: self.setting.plain.then_some(omega),
-            derivatives,
+            basis: &self.basis,
             residual: &mut self.residual,
-            matrix: &mut self.matrix,
-            chain: &mut self.chain,
+            sink,
             room: &mut self.room,
         };
         pass.begin(&self.reference);
@@ -235,24 +308,22 @@ impl Equations {
             pass.go(interval, passed);
         }
         pass.close(&self.reference);
-        self.switches(u, derivatives);
+        self.switches(u);
         // Unknowns that belong to no motion, as of a frequency of zero.
         self.failed = !self.residual.iter().all(|x| x.is_finite());
     }
 
     /// Equations (2) and (3) of [`skeleton`](super::skeleton).
-    fn switches(&mut self, u: &[f64], derivatives: bool) {
+    fn switches(&mut self, u: &[f64]) {
         for index in 0..self.skeleton.switches.len() {
             match self.skeleton.switches[index].told {
                 Told::Alone => {
                     let row = self.skeleton.slot(index);
                     self.residual[row] = self.room.at_switch[index][0];
-                    if derivatives {
-                        self.write_row(row, &[(index, Of::Gap, 1.0)]);
-                    }
+                    self.write_row(row, &[(index, Of::Gap, 1.0)], None);
                 }
                 Told::First { other, bend } => {
-                    self.touching(u, [index, other], bend, derivatives);
+                    self.touching(u, [index, other], bend);
                 }
                 Told::Second { .. } => {}
             }
@@ -260,8 +331,7 @@ impl Equations {
     }
 
     /// Those of two switches that may meet.
-    fn touching(&mut self, u: &[f64], [first, second]: [usize; 2], bend: f64, derivatives: bool) {
-        let columns = self.skeleton.told() + 1;
+    fn touching(&mut self, u: &[f64], [first, second]: [usize; 2], bend: f64) {
         let rows = [first, second].map(|switch| self.skeleton.slot(switch));
         let told = self.skeleton.opened(first);
         let square = told.square(u[rows[1]]);
@@ -271,39 +341,45 @@ impl Equations {
             self.residual[rows[0]] = 0.5 * (a[0] + b[0]);
             let slope = (b[0] - a[0]) / (2.0 * half);
             self.residual[rows[1]] = slope;
-            if !derivatives {
-                return;
-            }
-            let per = 0.5 / half;
-            self.write_row(rows[0], &[(first, Of::Gap, 0.5), (second, Of::Gap, 0.5)]);
-            self.write_row(rows[1], &[(first, Of::Gap, -per), (second, Of::Gap, per)]);
-            self.matrix[rows[1] * columns + rows[1]] -= slope / half * by_unknown;
+            let (per, own) = (0.5 / half, -slope / half * by_unknown);
+            let middle = [(first, Of::Gap, 0.5), (second, Of::Gap, 0.5)];
+            let apart = [(first, Of::Gap, -per), (second, Of::Gap, per)];
+            self.write_row(rows[0], &middle, None);
+            self.write_row(rows[1], &apart, Some((rows[1], own)));
         } else {
             self.residual[rows[0]] = a[0] + bend * square;
             self.residual[rows[1]] = a[1];
-            if !derivatives {
-                return;
-            }
-            self.write_row(rows[0], &[(first, Of::Gap, 1.0)]);
-            self.write_row(rows[1], &[(first, Of::Slope, 1.0)]);
-            self.matrix[rows[0] * columns + rows[1]] += bend;
+            self.write_row(rows[0], &[(first, Of::Gap, 1.0)], Some((rows[1], bend)));
+            self.write_row(rows[1], &[(first, Of::Slope, 1.0)], None);
         }
     }
 
-    /// Writes derivatives of a sum of what gaps are at switches.
-    fn write_row(&mut self, row: usize, terms: &[(usize, Of, f64)]) {
-        let (order, columns) = (self.skeleton.order, self.skeleton.told() + 1);
-        let entries = &mut self.matrix[row * columns..][..columns];
-        entries.fill(0.0);
+    /// Writes derivatives of a sum of what gaps are at switches, and adds one more by an unknown, if they are asked for.
+    fn write_row(&mut self, row: usize, terms: &[(usize, Of, f64)], more: Option<(usize, f64)>) {
+        let mut sink = match (self.derived, &mut self.pairs) {
+            (Derived::Nothing, _) => return,
+            (Derived::Paired, Some(pairs)) => Sink::Pairs(pairs),
+            _ => Sink::Chain {
+                chain: &mut self.chain,
+                matrix: &mut self.matrix,
+            },
+        };
+        let order = self.skeleton.order;
+        let first = sink.first(order);
+        let columns = self.skeleton.told() + 1 - first;
+        sink.row_mut(row, [order, columns]).fill(0.0);
         for &(switch, of, factor) in terms {
             let [rows, forms] = match of {
                 Of::Gap => [&self.room.switch_rows, &self.room.gap_forms],
                 Of::Slope => [&self.room.slope_rows, &self.room.slope_forms],
             };
-            add(entries, factor, &rows[switch * columns..][..columns]);
+            let known = &rows[switch * columns..][..columns];
+            add(sink.row_mut(row, [order, columns]), factor, known);
             let form = &forms[switch * order..][..order];
-            self.chain
-                .read(row, self.room.read_at[switch], factor, form);
+            sink.read(row, self.room.read_at[switch], factor, form);
+        }
+        if let Some((unknown, slope)) = more {
+            sink.row_mut(row, [order, columns])[unknown - first] += slope;
         }
     }
 
@@ -357,11 +433,15 @@ impl Equations {
         self.parameter_column(u, &mut column);
         self.pass(u, true);
         let told = self.skeleton.told();
-        if self.chain.singular().is_none() {
-            self.chain.set_parameter(&mut column);
-        }
-        for (row, slope) in column[..told].iter().enumerate() {
-            self.matrix[row * (told + 1) + told] = *slope;
+        if let Some(pairs) = &mut self.pairs {
+            pairs.set_parameter(&column);
+        } else {
+            if self.chain.singular().is_none() {
+                self.chain.set_parameter(&mut column);
+            }
+            for (row, slope) in column[..told].iter().enumerate() {
+                self.matrix[row * (told + 1) + told] = *slope;
+            }
         }
         self.column = column;
         self.by_parameter = true;
@@ -392,13 +472,21 @@ impl Problem for Equations {
     }
 
     fn partition(&self) -> Partition {
-        Partition::chained(self.skeleton.unknowns(), self.skeleton.told())
+        let unknowns = self.skeleton.unknowns();
+        if self.pairs.is_some() {
+            return Partition::paired(unknowns, self.skeleton.order / 2);
+        }
+        Partition::chained(unknowns, self.skeleton.told())
     }
 
     fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
         self.compute(u, jacobian.is_some());
         residual.copy_from_slice(&self.residual);
         let Some(jacobian) = jacobian else { return };
+        if let Some(pairs) = &mut self.pairs {
+            jacobian.take_pairs(pairs);
+            return;
+        }
         // The parameter stands last in a row here as there.
         let told = self.skeleton.told();
         for (row, entries) in self.matrix.chunks_exact(told + 1).enumerate() {

@@ -5,6 +5,7 @@
 
 use super::integrals::Loaded;
 use super::pass_results::Passed;
+use super::sink::Sink;
 use super::targets::Way;
 use super::workspace::Room;
 use crate::contact_equation::linear_part::block::{add, row_times};
@@ -13,7 +14,7 @@ use crate::contact_equation::linear_part::values::{Instant, Values, pair};
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::interval::{Active, Interval};
 use crate::contact_equation::skeleton::phases::Place;
-use crate::continuation::chain::Chain;
+use crate::continuation::arrow::links::Basis;
 use crate::law::{Derivatives, On};
 use crate::system::System;
 
@@ -30,11 +31,10 @@ pub(super) struct Pass<'p> {
     pub(in crate::contact_equation) u: &'p [f64],
     /// The frequency, where it is varied and nothing but the time depends on it.
     pub(in crate::contact_equation) omega: Option<f64>,
-    pub(in crate::contact_equation) derivatives: bool,
+    /// `T` of the linear part.
+    pub(in crate::contact_equation) basis: &'p Basis,
     pub(in crate::contact_equation) residual: &'p mut [f64],
-    /// Derivatives of what is not a force at a node, by what is none, when forces are eliminated; and how those are.
-    pub(in crate::contact_equation) matrix: &'p mut [f64],
-    pub(in crate::contact_equation) chain: &'p mut Chain,
+    pub(in crate::contact_equation) sink: Sink<'p>,
     pub(in crate::contact_equation) room: &'p mut Room,
 }
 
@@ -48,37 +48,52 @@ struct Stretch<'i> {
     to: Place,
     /// In units of time.
     time: f64,
+    /// The first unknown that rows of derivatives have.
+    first: usize,
 }
 
 impl Stretch<'_> {
     /// Adds the derivatives of what changes so with where the interval begins and ends. The places of these are among the first columns.
     fn add_slopes(&self, [from, to, _]: [f64; 3], row: &mut [f64]) {
         for (unknown, slope) in self.from.slopes() {
-            row[unknown] += from * slope;
+            row[unknown - self.first] += from * slope;
         }
         for (unknown, slope) in self.to.slopes() {
-            row[unknown] += to * slope;
+            row[unknown - self.first] += to * slope;
         }
     }
 }
 
 impl Pass<'_> {
-    /// States where the period begins, switches, and the parameter.
+    /// States where the period begins if rows have them, switches, and the parameter.
     fn columns(&self) -> usize {
-        self.skeleton.told() + 1
+        self.skeleton.told() + 1 - self.first()
+    }
+
+    /// The first unknown that rows of derivatives have.
+    fn first(&self) -> usize {
+        self.sink.first(self.skeleton.order)
+    }
+
+    fn derivatives(&self) -> bool {
+        self.sink.is_asked()
     }
 
     /// The states where the period begins. Unknown there are positions and velocities, whatever the modes are.
     pub(in crate::contact_equation) fn begin(&mut self, reference: &[f64]) {
         let (order, columns) = (self.skeleton.order, self.columns());
-        let inverse = &self.values.linear.inverse;
+        for i in 0..order {
+            let row = self.basis.from.row(i);
+            let known = row.map(|(j, x)| x * (self.u[j] + reference[j]));
+            self.room.y[i] = known.sum();
+        }
+        if !matches!(self.sink, Sink::Chain { .. }) {
+            return;
+        }
         self.room.by.fill(0.0);
         for i in 0..order {
-            let row = &mut self.room.by[i * columns..][..order];
-            self.room.y[i] = 0.0;
-            for (j, entry) in row.iter_mut().enumerate() {
-                *entry = inverse[(i, j)];
-                self.room.y[i] += *entry * (self.u[j] + reference[j]);
+            for (j, x) in self.basis.from.row(i) {
+                self.room.by[i * columns + j] = x;
             }
         }
     }
@@ -86,38 +101,26 @@ impl Pass<'_> {
     /// Residuals of the period.
     pub(super) fn close(&mut self, reference: &[f64]) {
         let (order, columns) = (self.skeleton.order, self.columns());
-        let linear = &self.values.linear;
         let image = &self.skeleton.recurrence().image;
-        let n = order / 2;
+        let last = self.skeleton.intervals.len() - 1;
         for i in 0..order {
-            let half = if i < n {
-                &linear.positions
-            } else {
-                &linear.velocities
-            };
-            let through = half.row(i % n);
-            let (place, sign) = image.state_entry(i, n);
+            let (place, sign) = image.state_entry(i, order / 2);
             let known = self.u[place] + reference[place];
-            let pairs = through.iter().zip(&self.room.y);
-            self.residual[i] = pairs.map(|(a, y)| a * y).sum::<f64>() - sign * known;
-            if !self.derivatives {
+            let through = self.basis.to.row(i).map(|(j, x)| x * self.room.y[j]);
+            self.residual[i] = through.sum::<f64>() - sign * known;
+            // Where there are pairs it is known how they come back.
+            let Sink::Chain { chain, matrix } = &mut self.sink else {
                 continue;
-            }
-            let row = &mut self.matrix[i * columns..][..columns];
+            };
+            let row = &mut matrix[i * columns..][..columns];
             row.fill(0.0);
             let form = &mut self.room.rows[0];
-            for ((factor, by), form) in through
-                .iter()
-                .zip(self.room.by.chunks_exact(columns))
-                .zip(form)
-            {
-                *form = *factor;
-                if *factor != 0.0 {
-                    add(row, *factor, by);
-                }
+            form.fill(0.0);
+            for (j, factor) in self.basis.to.row(i) {
+                form[j] = factor;
+                add(row, factor, &self.room.by[j * columns..][..columns]);
             }
-            let last = self.skeleton.intervals.len() - 1;
-            self.chain.read(i, last, 1.0, &self.room.rows[0]);
+            chain.read(i, last, 1.0, form);
             row[place] -= sign;
         }
     }
@@ -140,6 +143,7 @@ impl Pass<'_> {
             from,
             to,
             time,
+            first: self.first(),
         };
         let values = stretch.configuration.map_or(self.values, |of| &of.values);
         passed.phases = [from.phase, to.phase];
@@ -158,15 +162,13 @@ impl Pass<'_> {
         passed.forced.clear();
         passed.load.clear();
         passed.stiffness.clear();
-        if self.derivatives {
+        if matches!(self.sink, Sink::Chain { .. }) {
             let nodes = interval.active.len() * interval.nodes.count();
             passed.stiffness.resize(nodes, 0.0);
         }
         passed.states.clear();
         passed.states.extend_from_slice(&self.room.y);
-        if self.derivatives {
-            self.chain.link_mut(index).clear();
-        }
+        self.sink.clear(index);
         if nowhere {
             self.nowhere(&stretch);
         } else {
@@ -183,8 +185,7 @@ impl Pass<'_> {
         let first = interval.first();
         for row in first..first + interval.forces() {
             self.residual[row] = self.u[row];
-            if self.derivatives {
-                let [own, ..] = self.chain.link_mut(stretch.index).equation_mut(row - first);
+            if let Some([own, ..]) = self.sink.equation_mut(stretch.index, row - first) {
                 own[row - first] = 1.0;
             }
         }
@@ -194,9 +195,9 @@ impl Pass<'_> {
 
     /// Eliminates the forces of an interval, whose derivatives are written.
     fn pass_on(&mut self, stretch: &Stretch<'_>) {
-        if self.derivatives {
+        if let Sink::Chain { chain, .. } = &mut self.sink {
             let room = &mut *self.room;
-            self.chain.pass(stretch.index, &room.by, &mut room.by_next);
+            chain.pass(stretch.index, &room.by, &mut room.by_next);
             std::mem::swap(&mut room.by, &mut room.by_next);
         }
     }
@@ -204,7 +205,7 @@ impl Pass<'_> {
     /// Nodes of an interval, and the states at its end.
     fn interior(&mut self, stretch: &Stretch<'_>, passed: &mut Passed) {
         let active = &stretch.interval.active[..];
-        let loaded = self.loaded(stretch);
+        let (loaded, derivatives) = (self.loaded(stretch), self.derivatives());
         let room = &mut *self.room;
         if !active.is_empty() {
             room.integrals.fill(&loaded);
@@ -224,7 +225,7 @@ impl Pass<'_> {
             begun: [by_phase, by_base],
             integrals: (!active.is_empty()).then_some(&room.integrals),
             omega: self.omega,
-            derivatives: self.derivatives,
+            derivatives,
         };
         room.targets.fill(&way);
         let targets = way.psi.len();
@@ -254,7 +255,7 @@ impl Pass<'_> {
             phases: [stretch.from.phase, stretch.to.phase],
             time: stretch.time,
             u: self.u,
-            derivatives: self.derivatives,
+            derivatives: self.derivatives(),
         }
     }
 
@@ -328,7 +329,7 @@ impl Pass<'_> {
             }
             let row = active.first + node;
             self.residual[row] = self.u[row] - self.room.forces[at];
-            if self.derivatives {
+            if self.derivatives() {
                 self.row(stretch, at, node, row);
             }
         }
@@ -363,8 +364,9 @@ impl Pass<'_> {
             *output = by[0] * gap + by[1] * rate;
         }
         let local = row - stretch.interval.first();
-        let link = self.chain.link_mut(stretch.index);
-        let [own, by_states, direct] = link.equation_mut(local);
+        let Some([own, by_states, direct]) = self.sink.equation_mut(stretch.index, local) else {
+            return;
+        };
         let of = &room.outputs[at];
         let by_phase = by[0] * of.by_phase[0] + by[1] * of.by_phase[1];
         let mut slopes = [(1.0 - psi) * by_phase, psi * by_phase, by[1] * of.by_omega];
@@ -392,7 +394,6 @@ impl Pass<'_> {
 
     /// Goes over to the states at the end.
     fn end(&mut self, stretch: &Stretch<'_>) {
-        let columns = self.columns();
         let active = &stretch.interval.active[..];
         let target = if active.is_empty() {
             0
@@ -402,38 +403,62 @@ impl Pass<'_> {
         let loaded = self.loaded(stretch);
         let room = &mut *self.room;
         room.targets.write(target, &mut room.y);
-        if !self.derivatives {
-            return;
-        }
         for (r, block) in self.values.linear.blocks.iter().enumerate() {
             let [c, k] = room.targets.kernel(target, r);
             let d = block.deviation;
             for i in 0..2 {
                 let state = 2 * r + i;
-                let [carried, driven] = self.chain.link_mut(stretch.index).state_mut(state);
-                carried.fill(0.0);
-                for j in 0..2 {
-                    carried[2 * r + j] = c * f64::from(u8::from(i == j)) + k * d[i][j];
-                }
-                let direct = &mut room.by_next[state * columns..][..columns];
-                direct.fill(0.0);
-                let slopes = room.targets.slopes(target, state);
-                stretch.add_slopes(slopes, direct);
-                if self.omega.is_some() {
-                    direct[columns - 1] += slopes[2];
+                let Some([carried, driven]) = self.sink.state_mut(stretch.index, state) else {
+                    return;
+                };
+                for (j, carried) in carried.iter_mut().enumerate() {
+                    *carried = c * f64::from(u8::from(i == j)) + k * d[i][j];
                 }
                 if !active.is_empty() {
+                    // Nothing but the pair is looked at.
                     let [unit_row, turned, _] = &mut room.rows;
-                    unit_row.fill(0.0);
+                    let place = 2 * r..2 * r + 2;
+                    unit_row[place.clone()].copy_from_slice(&[0.0; 2]);
                     unit_row[state] = 1.0;
-                    turned.fill(0.0);
-                    turned[2 * r..2 * r + 2].copy_from_slice(&d[i]);
+                    turned[place].copy_from_slice(&d[i]);
                     room.integrals
                         .add_own(&loaded, r..r + 1, [unit_row, turned], target, driven);
                 }
             }
         }
+        self.move_end(stretch, target);
         self.pass_on(stretch);
+    }
+
+    /// How the states at the end move with the ends of the interval and with the parameter.
+    fn move_end(&mut self, stretch: &Stretch<'_>, target: usize) {
+        let (order, columns) = (self.skeleton.order, self.columns());
+        let room = &mut *self.room;
+        let varied = self.omega.is_some();
+        match &mut self.sink {
+            Sink::Nowhere => {}
+            Sink::Chain { .. } => {
+                for state in 0..order {
+                    let direct = &mut room.by_next[state * columns..][..columns];
+                    direct.fill(0.0);
+                    let slopes = room.targets.slopes(target, state);
+                    stretch.add_slopes(slopes, direct);
+                    if varied {
+                        direct[columns - 1] += slopes[2];
+                    }
+                }
+            }
+            Sink::Pairs(pairs) => {
+                let link = pairs.link_mut(stretch.index);
+                let places = [stretch.from, stretch.to].map(|place| place.slopes());
+                let first = stretch.first;
+                link.set_ends(places.map(|of| of.map(move |(unknown, by)| (unknown - first, by))));
+                for state in 0..order {
+                    let [from, to, omega] = room.targets.slopes(target, state);
+                    *link.slopes_mut(state) = [from, to, if varied { omega } else { 0.0 }];
+                }
+            }
+        }
     }
 
     /// The same where forces are in a configuration: states are taken over to it where the interval begins, and given back, so that
@@ -443,9 +468,10 @@ impl Pass<'_> {
         let room = &mut *self.room;
         room.targets.write(0, &mut room.rows[0]);
         of.give(&room.rows[0], &mut room.y);
-        if !self.derivatives {
+        // Where there are pairs, there are no configurations.
+        let Sink::Chain { chain, .. } = &mut self.sink else {
             return;
-        }
+        };
         for (r, block) in of.values.linear.blocks.iter().enumerate() {
             let [c, k] = room.targets.kernel(0, r);
             let d = block.deviation;
@@ -458,7 +484,7 @@ impl Pass<'_> {
             }
         }
         for state in 0..order {
-            let [carried, _] = self.chain.link_mut(stretch.index).state_mut(state);
+            let [carried, _] = chain.link_mut(stretch.index).state_mut(state);
             carried.fill(0.0);
             let mut slopes = [0.0; 3];
             for (own, row) in room.carried.chunks_exact(order).enumerate() {
@@ -481,6 +507,7 @@ impl Pass<'_> {
     /// Gap less level where an interval ends, and its slope. Everything that they depend on is in the states there.
     fn at_switch(&mut self, stretch: &Stretch<'_>, switch: usize) {
         let (columns, base) = (self.columns(), self.values.base);
+        let (asked, chained) = (self.derivatives(), matches!(self.sink, Sink::Chain { .. }));
         let of = self.skeleton.switches[switch];
         let contact = &self.values.contacts[of.contact];
         let instant = self.instant(stretch.to.phase);
@@ -488,7 +515,7 @@ impl Pass<'_> {
         let [gap, rate, another] = &mut room.rows;
         let output = contact.output(instant, &room.y, [gap, rate], another);
         room.at_switch[switch] = [output.gap - contact.levels[of.level], output.rate / base];
-        if !self.derivatives {
+        if !asked {
             return;
         }
         let by_omega = |omega: f64| (output.by_omega - output.rate / omega) / base;
@@ -504,10 +531,10 @@ impl Pass<'_> {
         for ((of, rows, factor, by_omega), by_phase) in sides.into_iter().zip(output.by_phase) {
             let row = &mut rows[switch * columns..][..columns];
             row.fill(0.0);
-            for (x, by) in of.iter().zip(room.by.chunks_exact(columns)) {
-                if *x != 0.0 {
-                    add(row, factor * x, by);
-                }
+            // Where there are pairs, forms of the states are enough.
+            let through = of.iter().zip(room.by.chunks_exact(columns));
+            for (x, by) in through.filter(|(x, _)| chained && **x != 0.0) {
+                add(row, factor * x, by);
             }
             stretch.add_slopes([0.0, factor * by_phase, 0.0], row);
             row[columns - 1] += by_omega;

@@ -41,6 +41,13 @@ pub(in crate::contact_equation) struct Room {
 }
 
 impl Room {
+    /// Makes room for derivatives of states, where they are carried along.
+    pub(super) fn carry(&mut self, skeleton: &Skeleton) {
+        let size = skeleton.order * (skeleton.told() + 1);
+        self.by.resize(size, 0.0);
+        self.by_next.resize(size, 0.0);
+    }
+
     pub(in crate::contact_equation) fn new(skeleton: &Skeleton) -> Self {
         let (order, columns) = (skeleton.order, skeleton.told() + 1);
         let most =
@@ -56,8 +63,8 @@ impl Room {
         let switches = skeleton.switches.len();
         Self {
             y: states(),
-            by: vec![0.0; order * columns],
-            by_next: vec![0.0; order * columns],
+            by: Vec::new(),
+            by_next: Vec::new(),
             steady_from: std::array::from_fn(|_| states()),
             integrals: Integrals::new(order, nodes, forces),
             targets: Targets::new(order, nodes + 1),

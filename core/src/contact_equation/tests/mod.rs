@@ -5,6 +5,7 @@ mod both_sides;
 mod grazings;
 mod jumps;
 mod minimal_period;
+mod modes;
 mod moving_stiffness;
 mod order;
 mod several;

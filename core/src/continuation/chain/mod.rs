@@ -16,7 +16,8 @@
 //! S_k+1 = E_k S_k + G_k - F_k D_k,    c_k+1 = E_k c_k + F_k h_k                                               (5)
 //! ```
 //!
-//! so that no factorisation is larger than a link. Whoever makes (1) has `S_k` and passes it on.
+//! so that no factorisation is larger than a link. Whoever makes (1) has `S_k` and passes it on. Where a link couples states in pairs only, `E_k` has
+//! blocks of order two, and what it does to a state costs as little as there are in its block.
 //!
 //! Source: Doedel, Keller and Kernevez (1991), Numerical analysis and control of bifurcation problems (II), section 2.5 (condensation of
 //! parameters in collocation).
@@ -24,19 +25,33 @@
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use multiversion::multiversion;
 
 use crate::numeric::linear::{Group, LANES, Lu, Matrix, Singular, dot, times_columns};
 
+/// What a link has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Size {
+    /// Unknowns.
+    pub(crate) count: usize,
+    /// Its `E` couples all states, and not those of a pair alone.
+    pub(crate) couples: bool,
+}
+
 /// One link.
 #[derive(Debug, Clone)]
 pub(crate) struct Link {
+    size: Size,
+    /// Entries of a row of `E`.
+    width: usize,
     /// `A`, factorised by [`Link::eliminate`].
     matrix: Matrix,
     lu: Lu,
     /// `B`, row by row.
     by_states: Vec<f64>,
-    /// `E` and `F`, row by row.
+    /// `E` row by row, of each what is in its block; and `F` row by row.
     carried: Vec<f64>,
     driven: Vec<f64>,
     /// `L` row by row in whole groups, and `D` column by column.
@@ -74,13 +89,28 @@ pub(crate) struct Chain {
     known: Vec<Group>,
 }
 
+impl Size {
+    /// Entries of a row of `E`.
+    fn width(self, states: usize) -> usize {
+        if self.couples { states } else { 2 }
+    }
+
+    /// The state that the first of them belongs to.
+    fn first(self, row: usize) -> usize {
+        if self.couples { 0 } else { row - row % 2 }
+    }
+}
+
 impl Link {
-    fn new(count: usize, states: usize, columns: usize) -> Self {
+    fn new(size: Size, states: usize, columns: usize) -> Self {
+        let count = size.count;
         Self {
+            size,
+            width: size.width(states).max(1),
             matrix: Matrix::zeros(count),
             lu: Lu::new(count),
             by_states: vec![0.0; count * states],
-            carried: vec![0.0; states * states],
+            carried: vec![0.0; states * size.width(states)],
             driven: vec![0.0; states * count],
             direct: vec![0.0; count * columns.next_multiple_of(LANES)],
             through: vec![0.0; columns * count],
@@ -89,6 +119,12 @@ impl Link {
 
     fn count(&self) -> usize {
         self.lu.order()
+    }
+
+    /// A row of `E`, and the states that it is of.
+    fn carried(&self, row: usize) -> (&[f64], Range<usize>) {
+        let (width, first) = (self.width, self.size.first(row));
+        (&self.carried[row * width..][..width], first..first + width)
     }
 
     /// Takes the factors of another one of the same size.
@@ -114,11 +150,11 @@ impl Link {
         ]
     }
 
-    /// One of (2), to be written: rows of `E` and `F`.
+    /// One of (2), to be written: rows of `E`, of which there is what is in a block, and of `F`.
     pub(crate) fn state_mut(&mut self, row: usize) -> [&mut [f64]; 2] {
-        let (states, count) = (self.carried.len().isqrt(), self.count());
+        let (width, count) = (self.width, self.count());
         [
-            &mut self.carried[row * states..][..states],
+            &mut self.carried[row * width..][..width],
             &mut self.driven[row * count..][..count],
         ]
     }
@@ -130,9 +166,25 @@ impl Link {
         for of in all {
             of.fill(0.0);
         }
-        let states = self.carried.len().isqrt();
-        for (index, entry) in self.carried.iter_mut().enumerate() {
-            *entry = f64::from(u8::from(index % (states + 1) == 0));
+        let (width, size) = (self.width, self.size);
+        for (row, entries) in self.carried.chunks_exact_mut(width).enumerate() {
+            entries.fill(0.0);
+            entries[row - size.first(row)] = 1.0;
+        }
+    }
+
+    /// `E S` of (5), added.
+    fn carry(&self, states: &[f64], next: &mut [f64], columns: usize) {
+        for (row, to) in next.chunks_exact_mut(columns).enumerate() {
+            let (carried, of) = self.carried(row);
+            let of = states[of.start * columns..of.end * columns].chunks_exact(columns);
+            for (factor, of) in carried.iter().zip(of) {
+                if *factor != 0.0 {
+                    for (to, of) in to.iter_mut().zip(of) {
+                        *to += factor * of;
+                    }
+                }
+            }
         }
     }
 
@@ -143,9 +195,9 @@ impl Link {
         next: &mut [f64],
         [solved, known]: [&mut Vec<Group>; 2],
     ) -> Result<(), Singular> {
-        let (order, count) = (self.carried.len().isqrt(), self.count());
-        let columns = states.len() / order.max(1);
-        carry(&self.carried, states, next, columns);
+        let count = self.count();
+        let columns = states.len() / (self.carried.len() / self.width).max(1);
+        self.carry(states, next, columns);
         if count == 0 {
             return Ok(());
         }
@@ -183,21 +235,6 @@ impl Link {
     }
 }
 
-/// `E S` of (5), added.
-fn carry(carried: &[f64], states: &[f64], next: &mut [f64], columns: usize) {
-    let order = carried.len().isqrt();
-    let rows = carried.chunks_exact(order.max(1));
-    for (carried, to) in rows.zip(next.chunks_exact_mut(columns)) {
-        for (factor, of) in carried.iter().zip(states.chunks_exact(columns)) {
-            if *factor != 0.0 {
-                for (to, of) in to.iter_mut().zip(of) {
-                    *to += factor * of;
-                }
-            }
-        }
-    }
-}
-
 /// Adds the products of every row with some columns.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_products(rows: &[f64], columns: &[Group], to: &mut [Group]) {
@@ -211,10 +248,10 @@ fn add_products(rows: &[f64], columns: &[Group], to: &mut [Group]) {
 }
 
 impl Chain {
-    /// Of links with so many unknowns each, between so many states, beside so many other unknowns.
-    pub(crate) fn new(counts: impl Iterator<Item = usize>, states: usize, unknowns: usize) -> Self {
+    /// Of links of these sizes, between so many states, beside so many other unknowns.
+    pub(crate) fn new(sizes: impl Iterator<Item = Size>, states: usize, unknowns: usize) -> Self {
         let columns = unknowns + 1;
-        let links: Vec<Link> = counts.map(|n| Link::new(n, states, columns)).collect();
+        let links: Vec<Link> = sizes.map(|of| Link::new(of, states, columns)).collect();
         Self {
             states,
             columns,
@@ -232,9 +269,9 @@ impl Chain {
 
     /// Takes the factors of another one over, in place where that has the same sizes.
     pub(crate) fn take_over(&mut self, of: &Self) {
-        let counts = |chain: &Self| chain.links.iter().map(Link::count).eq(of.counts());
-        if !counts(self) || (self.states, self.columns) != (of.states, of.columns) {
-            *self = Self::new(of.counts(), of.states, of.columns - 1);
+        let alike = self.sizes().eq(of.sizes());
+        if !alike || (self.states, self.columns) != (of.states, of.columns) {
+            *self = Self::new(of.sizes(), of.states, of.columns - 1);
         }
         for (link, of) in self.links.iter_mut().zip(&of.links) {
             link.take_over(of);
@@ -244,8 +281,8 @@ impl Chain {
         self.singular = of.singular;
     }
 
-    fn counts(&self) -> impl Iterator<Item = usize> + '_ {
-        self.links.iter().map(Link::count)
+    fn sizes(&self) -> impl Iterator<Item = Size> + '_ {
+        self.links.iter().map(|link| link.size)
     }
 
     /// Forgets what the other equations read.
@@ -326,8 +363,9 @@ impl Chain {
                 link.lu.solve(&link.matrix, own);
             }
             for (row, behind) in behind.iter_mut().enumerate() {
-                let carried = link.carried[row * order..][..order].iter();
-                let carried: f64 = carried.zip(&self.at).map(|(e, c)| e * c).sum();
+                let (carried, of) = link.carried(row);
+                let carried = carried.iter().zip(&self.at[of]);
+                let carried: f64 = carried.map(|(e, c)| e * c).sum();
                 *behind = carried + dot(&link.driven[row * count..][..count], own);
             }
             self.at.copy_from_slice(behind);
@@ -404,11 +442,8 @@ impl Chain {
             }
             self.next.fill(0.0);
             for (row, at) in self.at.iter().enumerate() {
-                for (to, e) in self
-                    .next
-                    .iter_mut()
-                    .zip(&link.carried[row * order..][..order])
-                {
+                let (carried, of) = link.carried(row);
+                for (to, e) in self.next[of].iter_mut().zip(carried) {
                     *to += e * at;
                 }
             }

@@ -24,7 +24,11 @@ impl Whole {
     fn new(counts: &[usize], states: usize, others: usize) -> Self {
         let n = others + counts.iter().sum::<usize>();
         let columns = others + 1;
-        let mut chain = Chain::new(counts.iter().copied(), states, others);
+        let sizes = counts.iter().enumerate().map(|(index, &count)| Size {
+            count,
+            couples: couples(index),
+        });
+        let mut chain = Chain::new(sizes, states, others);
         chain.begin();
         let mut random = Random::seeded(7);
         let by: Vec<f64> = (0..states * columns)
@@ -95,10 +99,21 @@ impl Whole {
         let mut all = DMatrix::<f64>::zeros(self.states, self.matrix.ncols());
         let mut behind: Vec<f64> = (0..self.states * columns).map(|_| self.next()).collect();
         for row in 0..self.states {
-            let random: Vec<f64> = (0..self.states + count).map(|_| self.next()).collect();
+            let mut random: Vec<f64> = (0..self.states + count).map(|_| self.next()).collect();
+            let apart = |state: usize| !couples(index) && state / 2 != row / 2;
+            for (state, e) in random[..self.states].iter_mut().enumerate() {
+                if apart(state) {
+                    *e = 0.0;
+                }
+            }
             let [carried, driven] = self.chain.link_mut(index).state_mut(row);
-            let entries = carried.iter_mut().chain(driven);
-            entries.zip(&random).for_each(|(to, x)| *to = *x);
+            let (start, width) = if couples(index) {
+                (0, self.states)
+            } else {
+                (row - row % 2, 2)
+            };
+            carried.copy_from_slice(&random[start..][..width]);
+            driven.copy_from_slice(&random[self.states..]);
             for (state, e) in random[..self.states].iter().enumerate() {
                 let to = all.row(row) + *e * self.by_all.row(state);
                 all.row_mut(row).copy_from(&to);
@@ -156,6 +171,11 @@ impl Whole {
         }
         (jacobian, self.matrix)
     }
+}
+
+/// Every other link couples all states, the others those of a pair.
+fn couples(link: usize) -> bool {
+    link.is_multiple_of(2)
 }
 
 /// Links with these numbers of unknowns.
