@@ -106,6 +106,11 @@ impl Block {
         self.mean == 0.0 && self.square == 0.0
     }
 
+    /// `m`
+    pub(super) fn mean(&self) -> f64 {
+        self.mean
+    }
+
     /// Size of the faster exponent.
     pub(in crate::contact_equation) fn rate(&self) -> f64 {
         self.mean.abs() + self.root

@@ -9,8 +9,10 @@ use crate::contact_equation::collocation::nodes::{Nodes, points_for};
 use crate::contact_equation::collocation::partway::Partway;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::equations::pass_results::{Extremes, Passed};
-use crate::contact_equation::linear_part::block::{Block, times};
+use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::linear_part::configuration::Configuration;
+use crate::contact_equation::linear_part::kernels::Found;
+use crate::contact_equation::linear_part::linear::of_states;
 use crate::contact_equation::linear_part::values::{Contact, Instant, Values, pair};
 use crate::time;
 
@@ -29,6 +31,7 @@ struct Room {
     /// States of a configuration.
     own: Vec<f64>,
     partway: Partway,
+    kernels: Found,
 }
 
 impl<'e> Motion<'e> {
@@ -41,6 +44,7 @@ impl<'e> Motion<'e> {
             steady: states(),
             own: states(),
             partway: Partway::default(),
+            kernels: Found::default(),
         };
         Self {
             equations,
@@ -105,8 +109,10 @@ impl<'e> Motion<'e> {
             0.0
         };
         values.write_steady(phase, &mut room.steady, None);
-        for (r, block) in values.linear.blocks.iter().enumerate() {
-            let free = times(block.exponential(time), pair(&passed.free, r));
+        let linear = &values.linear;
+        linear.kernels.find(&linear.blocks, time, &mut room.kernels);
+        for (r, block) in linear.blocks.iter().enumerate() {
+            let free = block.carried(room.kernels.kernel(r), pair(&passed.free, r));
             for i in 0..2 {
                 let at = 2 * r + i;
                 room.states[at] = free[i] + room.steady[at];
@@ -223,15 +229,7 @@ impl<'e> Motion<'e> {
         let room = &mut *self.room.borrow_mut();
         self.write(interval, phase, room);
         let linear = &self.equations.values.linear;
-        let n = state.len() / 2;
-        for (i, x) in state.iter_mut().enumerate() {
-            let row = if i < n {
-                linear.positions.row(i)
-            } else {
-                linear.velocities.row(i - n)
-            };
-            *x = row.iter().zip(&room.states).map(|(a, y)| a * y).sum();
-        }
+        linear.write_physical(&room.states, state);
     }
 
     /// A coordinate and its velocity, within an interval.
@@ -248,11 +246,7 @@ impl<'e> Motion<'e> {
 
     /// A coordinate and its velocity in these states.
     pub(super) fn coordinate_of(&self, index: usize, states: &[f64]) -> [f64; 2] {
-        let linear = &self.equations.values.linear;
-        [&linear.positions, &linear.velocities].map(|matrix| {
-            let row = matrix.row(index);
-            row.iter().zip(states).map(|(a, y)| a * y).sum()
-        })
+        of_states(&self.equations.values.linear.rows[index], states)
     }
 
     /// Writes the states at a phase within an interval.
