@@ -6,6 +6,11 @@
 //!
 //! Source: Cody and Waite (1980), Software Manual for the Elementary Functions, chapter 6 (the reduction, in two parts).
 
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the instruction set of its caller"
+)]
+
 use multiversion::multiversion;
 
 use super::block::{Block, Kernel};
@@ -105,13 +110,7 @@ fn decay(means: &[f64], per_root: &[f64], s: f64, [c, k]: [&mut [f64]; 2]) {
             let shifted = x * std::f64::consts::LOG2_E + WHOLE;
             let n = shifted - WHOLE;
             let r = (x - n * LN_2[0]) - n * LN_2[1];
-            let mut sum = 1.0;
-            // 1 + r (1 + r / 2 (1 + r / 3 (..)))
-            let mut order = 13;
-            while order > 0 {
-                sum = 1.0 + sum * (r * PER[order]);
-                order -= 1;
-            }
+            let sum = exponential(r);
             let power = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
             let decay = sum * power;
             c[j] *= decay;
@@ -120,23 +119,33 @@ fn decay(means: &[f64], per_root: &[f64], s: f64, [c, k]: [&mut [f64]; 2]) {
     }
 }
 
-/// One over whole numbers.
-const PER: [f64; 14] = [
-    0.0,
-    1.0,
-    1.0 / 2.0,
-    1.0 / 3.0,
-    1.0 / 4.0,
-    1.0 / 5.0,
-    1.0 / 6.0,
-    1.0 / 7.0,
-    1.0 / 8.0,
-    1.0 / 9.0,
-    1.0 / 10.0,
-    1.0 / 11.0,
-    1.0 / 12.0,
-    1.0 / 13.0,
-];
+/// `e^r` by its series.
+#[inline(always)]
+fn exponential(r: f64) -> f64 {
+    const PER: [f64; 14] = [
+        1.0,
+        1.0,
+        1.0 / 2.0,
+        1.0 / 6.0,
+        1.0 / 24.0,
+        1.0 / 120.0,
+        1.0 / 720.0,
+        1.0 / 5040.0,
+        1.0 / 40_320.0,
+        1.0 / 362_880.0,
+        1.0 / 3_628_800.0,
+        1.0 / 39_916_800.0,
+        1.0 / 479_001_600.0,
+        1.0 / 6_227_020_800.0,
+    ];
+    let square = r * r;
+    // Pairs, so that products do not wait for each other.
+    let pair = |k: usize| PER[k] + r * PER[k + 1];
+    let high = pair(8) + square * (pair(10) + square * pair(12));
+    let low = pair(0) + square * (pair(2) + square * (pair(4) + square * pair(6)));
+    let fourth = square * square;
+    low + fourth * fourth * high
+}
 
 #[cfg(test)]
 mod tests {

@@ -21,6 +21,7 @@
 pub(super) mod errors;
 pub(super) mod minimal_period;
 pub(super) mod overlooked;
+mod plain_outputs;
 mod stretch;
 
 use nalgebra::DMatrix;
@@ -109,8 +110,16 @@ impl Run<'_> {
     /// The outputs of the same, with more rounding of states if that is wanted.
     pub(super) fn outputs(&self, equations: &Equations, value: f64, rounded: bool) -> Vec<Extent> {
         let problem = &self.problem.asked;
-        let motion = Motion::of(equations);
         let recurrence = equations.skeleton.recurrence();
+        // Where an error is of an output, what rounding does to it is seen in states.
+        if !matches!(self.accuracy(), Accuracy::Output(_)) {
+            let (parameters, omega) = (problem.parameters_at(value), problem.omega_at(value));
+            let system = problem.system.as_ref();
+            if let Some(outputs) = plain_outputs::motions(equations, system, &parameters, omega) {
+                return outputs;
+            }
+        }
+        let motion = Motion::of(equations);
         let Some(mut outputs) = problem.output_reader(value, recurrence) else {
             return Vec::new();
         };
