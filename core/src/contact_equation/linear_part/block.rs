@@ -133,6 +133,11 @@ impl Block {
         })
     }
 
+    /// The exponent of what decays most slowly; zero where it grows.
+    pub(in crate::contact_equation) fn slowest(&self) -> f64 {
+        (self.mean + self.square.max(0.0).sqrt()).min(0.0)
+    }
+
     /// `-A^-1` of a constant load; nothing where an exponent is zero.
     pub(in crate::contact_equation) fn held(&self, load: Pair) -> Pair {
         let determinant = self.mean * self.mean - self.square;
@@ -199,7 +204,10 @@ impl Block {
     }
 
     /// `a c(s) + b k(s)` as real parts of two exponentials `z e^(m s)`; `None` where both are nearly one.
-    pub(in crate::contact_equation) fn exponentials(&self, [a, b]: Pair) -> Option<[[Complex<f64>; 2]; 2]> {
+    pub(in crate::contact_equation) fn exponentials(
+        &self,
+        [a, b]: Pair,
+    ) -> Option<[[Complex<f64>; 2]; 2]> {
         if self.root <= APART * self.mean.abs() || self.root == 0.0 {
             return None;
         }
@@ -209,7 +217,12 @@ impl Block {
             let m = Complex::new(self.mean, self.root);
             [[Complex::new(a, -by), m], [real(0.0), m]]
         } else {
-            let of = |sign: f64| [real(0.5 * (a + sign * by)), real(self.mean + sign * self.root)];
+            let of = |sign: f64| {
+                [
+                    real(0.5 * (a + sign * by)),
+                    real(self.mean + sign * self.root),
+                ]
+            };
             [of(1.0), of(-1.0)]
         })
     }

@@ -71,7 +71,12 @@ impl Kernels {
     /// Finds them of the same blocks at a time.
     pub(in crate::contact_equation) fn find(&self, blocks: &[Block], s: f64, found: &mut Found) {
         let count = self.means.len();
-        for room in [&mut found.angles, &mut found.c, &mut found.k, &mut found.decays] {
+        for room in [
+            &mut found.angles,
+            &mut found.c,
+            &mut found.k,
+            &mut found.decays,
+        ] {
             room.resize(count, 0.0);
         }
         if self.others.len() < blocks.len() {

@@ -90,7 +90,10 @@ impl Linear {
             Self::by_real_modes(m, c, k).or_else(|| Self::by_complex_modes(m, c, k))
         }?;
         linear.kernels = Kernels::of(&linear.blocks);
-        let pairs = linear.positions.row_iter().zip(linear.velocities.row_iter());
+        let pairs = linear
+            .positions
+            .row_iter()
+            .zip(linear.velocities.row_iter());
         linear.rows = pairs
             .map(|(position, rate)| seen(position.iter().copied(), rate.iter().copied()))
             .collect();

@@ -35,6 +35,8 @@ const ROUNDING: f64 = 1e-14;
 pub(super) struct Content {
     /// By pairs, (2) of both states.
     rings: Vec<Pair>,
+    /// Nothing but what is free rings, so that it decays.
+    decays: bool,
 }
 
 impl Content {
@@ -61,14 +63,24 @@ impl Content {
         }
         if !passed.forced.is_empty() {
             // What is free and what forces have made ring may add up.
-            rings.iter_mut().for_each(|most| *most = most.map(|x| 2.0 * x));
+            rings
+                .iter_mut()
+                .for_each(|most| *most = most.map(|x| 2.0 * x));
         }
-        Self { rings }
+        Self {
+            rings,
+            decays: passed.forced.is_empty(),
+        }
     }
 
     /// Of two states.
     pub(super) fn rings(&self, block: usize) -> Pair {
         self.rings[block]
+    }
+
+    /// How what rings in a block decays.
+    pub(super) fn decay(&self, block: &Block) -> f64 {
+        if self.decays { block.slowest() } else { 0.0 }
     }
 }
 
@@ -80,14 +92,39 @@ struct Ripple {
     /// Bounds of its values and of their rates.
     value: f64,
     rate: f64,
+    /// How they decay.
+    mean: f64,
 }
 
 /// Bounds of what in a signal is too fast to be followed by samples: of its values, their rates and the rates of these.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Fast {
     pub(super) value: f64,
     pub(super) rate: f64,
     pub(super) bend: f64,
+    /// All of it decays at least so fast.
+    mean: f64,
+}
+
+impl Fast {
+    /// A time later.
+    pub(super) fn after(self, time: f64) -> Self {
+        if self.mean == 0.0 || self.value == 0.0 {
+            return self;
+        }
+        let decay = (self.mean * time).exp();
+        Self {
+            value: decay * self.value,
+            rate: decay * self.rate,
+            bend: decay * self.bend,
+            ..self
+        }
+    }
+
+    /// There is nothing.
+    pub(super) fn is_none(&self) -> bool {
+        self.value == 0.0
+    }
 }
 
 /// What rings in a signal, the fastest first.
@@ -98,30 +135,51 @@ pub(super) struct Ripples {
     sums: Vec<Fast>,
     /// Bound of the fourth derivative of each and all that are slower.
     fourth: Vec<f64>,
-    /// The same of what does not ring.
+    /// The same of what does not ring, and a bound of its rates.
     steady: f64,
+    moves: f64,
 }
 
 impl Ripples {
-    pub(super) fn add(&mut self, turns: f64, value: f64, rate: f64) {
+    /// Of so many modes at most.
+    pub(super) fn with_room(count: usize) -> Self {
+        Self {
+            of: Vec::with_capacity(count),
+            sums: Vec::with_capacity(count),
+            fourth: Vec::with_capacity(count + 1),
+            ..Self::default()
+        }
+    }
+
+    pub(super) fn add(&mut self, turns: f64, mean: f64, [value, rate]: [f64; 2]) {
         if value > 0.0 || rate > 0.0 {
-            self.of.push(Ripple { turns, value, rate });
+            self.of.push(Ripple {
+                turns,
+                value,
+                rate,
+                mean,
+            });
         }
     }
 
     /// What does not ring: a wave, and how fast it turns.
     pub(super) fn add_wave(&mut self, turns: f64, value: f64) {
         self.steady += value * turns.powi(4);
+        self.moves += value * turns;
     }
 
     pub(super) fn sort(&mut self) {
         self.of.sort_unstable_by(|a, b| b.turns.total_cmp(&a.turns));
         self.sums.clear();
-        let mut sum = Fast::default();
+        let mut sum = Fast {
+            mean: f64::NEG_INFINITY,
+            ..Fast::default()
+        };
         for ripple in &self.of {
             sum.value += ripple.value;
             sum.rate += ripple.rate;
             sum.bend += ripple.rate * ripple.turns;
+            sum.mean = sum.mean.max(ripple.mean);
             self.sums.push(sum);
         }
         self.fourth.clear();
@@ -140,8 +198,7 @@ impl Ripples {
     pub(super) fn fast(&self, time: f64, size: f64) -> Fast {
         let count = self.count(time);
         let fast = count.checked_sub(1).map(|last| self.sums[last]);
-        let fast = fast.filter(|fast| fast.value > ROUNDING * size);
-        fast.unwrap_or_default()
+        fast.map_or(Fast::default(), |fast| unless_rounding(fast, size))
     }
 
     /// A bound of the fourth derivative of what is followed by samples that are so far apart, forces at nodes left out.
@@ -157,9 +214,18 @@ impl Ripples {
 
     /// How fast turns what is more than a part of all the rates.
     pub(super) fn most(&self, part: f64) -> f64 {
-        let all = self.sums.last().map_or(0.0, |sum| sum.rate);
+        let all = self.moves + self.sums.last().map_or(0.0, |sum| sum.rate);
         let counts = |sum: &Fast| sum.rate <= part * all;
         let place = self.sums.partition_point(counts);
         self.of.get(place).map_or(0.0, |of| of.turns)
+    }
+}
+
+/// Nothing where it is rounding of a signal of this size.
+pub(super) fn unless_rounding(fast: Fast, size: f64) -> Fast {
+    if fast.value > ROUNDING * size {
+        fast
+    } else {
+        Fast::default()
     }
 }

@@ -1,7 +1,7 @@
 //! Extremes of the coordinates and of the gaps of an orbit, from one walk along its period.
 //!
 //! States are sampled: those of the pass where its nodes are dense enough, else eight to the shortest period of the load, the directions that
-//! move and those modes whose ringing makes up the rates of gaps but for a twentieth, six on an interval at least. What rings faster is bounded,
+//! move and those modes whose ringing makes up the rates of gaps but for a tenth, six on an interval at least. What rings faster is bounded,
 //! and followed where an extreme may depend on it: see [`search`](super::search).
 //!
 //! Where a slope changes its sign between two samples, its zero is located to `1e-9` of their distance: of a gap every one, of a coordinate
@@ -14,13 +14,15 @@
 //!
 //! Source: de Boor (2001), A Practical Guide to Splines, chapter IV (cubic Hermite interpolation).
 
-use super::content::{Content, Fast};
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use super::content::Content;
 use super::motion::Motion;
 use super::search::{Cubic, Largest, Way, extreme};
-use super::signal::{Look, Of, Signal, Term, sum};
+use super::signal::{Look, Of, Signal, Term};
 use super::sums::integrals_of;
 use crate::contact_equation::equations::pass_results::{Extremes, GapExtreme};
-use crate::contact_equation::linear_part::linear::Seen;
 use crate::contact_equation::skeleton::placement::Told;
 use crate::numeric::roots::Place;
 
@@ -31,7 +33,7 @@ const FEWEST: f64 = 6.0;
 /// More are not taken, however fast the motion is.
 const MOST: f64 = 1e6;
 /// What makes up less than this part of the rates of a gap is not followed by samples alone.
-const PART: f64 = 0.05;
+const PART: f64 = 0.1;
 /// Two extremes of a gap as near as this are one.
 const SEEN_TWICE: f64 = 1e-6;
 /// The rate of a gap is looked at between samples where it may come as near to zero, in parts of the larger one of both, so often at most.
@@ -43,26 +45,26 @@ const ASIDE: f64 = 1e-3;
 /// An interval that takes time: what rings there, and phases of it with the states there.
 #[derive(Debug)]
 pub(in crate::contact_equation) struct Sampled {
-    interval: usize,
-    content: Content,
+    pub(super) interval: usize,
+    pub(super) content: Content,
     phases: Vec<f64>,
     states: Vec<f64>,
+    /// States at other phases, by the bits of these.
+    others: RefCell<HashMap<u64, Vec<f64>>>,
 }
 
 impl Extremes {
     /// Of the motion of the last pass.
     pub(in crate::contact_equation) fn of(motion: &Motion<'_>) -> Self {
         let values = &motion.equations.values;
-        let sampled = Sampled::of(motion);
+        let sampled = motion.sampled();
         let mut gaps = Vec::new();
         for (contact, of) in values.contacts.iter().enumerate() {
             let mut found = Vec::new();
             if !of.levels.is_empty() {
-                let row = if of.stands() { of.row() } else { Vec::new() };
                 let mut end = None;
-                for sampled in &sampled {
-                    let signal =
-                        Signal::new(motion, sampled.interval, &sampled.content, Of::Gap(contact));
+                for sampled in sampled {
+                    let signal = Signal::new(motion, sampled, Of::Gap(contact));
                     let scan = Scan {
                         motion,
                         signal,
@@ -70,17 +72,15 @@ impl Extremes {
                         contact,
                         found: &mut found,
                     };
-                    sampled.gap(scan, &row, &mut end);
+                    sampled.gap(scan, &mut end);
                 }
                 add_short(motion, contact, &mut found);
             }
             gaps.push(found);
         }
         let coordinates = 0..values.linear.rows.len();
-        let coordinates = coordinates.map(|coordinate| {
-            let row = &values.linear.rows[coordinate];
-            farthest(motion, &sampled, Of::Coordinate(coordinate), row)
-        });
+        let coordinates =
+            coordinates.map(|coordinate| farthest(motion, sampled, Of::Coordinate(coordinate)));
         let coordinates: Vec<[Place; 2]> = coordinates.collect();
         Self {
             coordinates: of_period(motion, &coordinates),
@@ -104,12 +104,11 @@ pub(in crate::contact_equation) fn read(
     terms: &[Term],
     constant: f64,
 ) -> Outputs {
-    let rows = &motion.equations.values.linear.rows;
     let of = Of::Sum(terms, constant);
-    let [least, most] = farthest(motion, sampled, of, &sum(rows, terms));
+    let [least, most] = farthest(motion, sampled, of);
     let mut integrals = [0.0; 2];
     for sampled in sampled {
-        let mut signal = Signal::new(motion, sampled.interval, &sampled.content, of);
+        let mut signal = Signal::new(motion, sampled, of);
         for (integral, own) in integrals.iter_mut().zip(integrals_of(&mut signal)) {
             *integral += own;
         }
@@ -121,22 +120,17 @@ pub(in crate::contact_equation) fn read(
     }
 }
 
-/// The smallest and the largest value of a signal, which sees a row of states.
-fn farthest(
-    motion: &Motion<'_>,
-    sampled: &[Sampled],
-    of: Of<'_>,
-    row: &[Seen],
-) -> [Place; 2] {
+/// The smallest and the largest value of a signal.
+fn farthest(motion: &Motion<'_>, sampled: &[Sampled], of: Of<'_>) -> [Place; 2] {
     let mut ways = Vec::new();
     let mut parts: Vec<Signal<'_, '_>> = Vec::new();
     let none = |value: f64| Place { x: 0.0, value };
     let mut ends = [none(f64::INFINITY), none(f64::NEG_INFINITY)];
     for sampled in sampled {
-        let signal = Signal::new(motion, sampled.interval, &sampled.content, of);
+        let signal = Signal::new(motion, sampled, of);
         let mut before: Option<Look> = None;
         for (index, &phase) in sampled.phases.iter().enumerate() {
-            let next = signal.of_states(phase, sampled.states(index), row);
+            let next = signal.of_states(phase, sampled.states(index));
             let place = none(next.value);
             let place = Place { x: phase, ..place };
             if next.value < ends[0].value {
@@ -213,6 +207,7 @@ impl Sampled {
                     content: Content::of(motion, interval),
                     phases: Vec::new(),
                     states: Vec::new(),
+                    others: RefCell::default(),
                 };
                 sampled.take(motion);
                 sampled
@@ -251,9 +246,26 @@ impl Sampled {
         let contacts = contacts.filter(|(_, contact)| !contact.levels.is_empty());
         let turns = contacts.map(|(contact, _)| {
             let of = Of::Gap(contact);
-            Signal::new(motion, self.interval, &self.content, of).most(PART)
+            Signal::new(motion, self, of).most(PART)
         });
         turns.fold(0.0, f64::max) / values.base / std::f64::consts::TAU
+    }
+
+    /// Looks at the states at a phase, which are kept.
+    pub(super) fn at<T>(&self, motion: &Motion<'_>, x: f64, look: impl FnOnce(&[f64]) -> T) -> T {
+        let mut others = self.others.borrow_mut();
+        let states = others.entry(x.to_bits()).or_insert_with(|| {
+            let mut states = vec![0.0; motion.equations.skeleton.order];
+            motion.states(self.interval, x, &mut states);
+            states
+        });
+        look(states)
+    }
+
+    /// At how many phases states are known.
+    #[cfg(test)]
+    pub(in crate::contact_equation) fn count(&self) -> usize {
+        self.phases.len() + self.others.borrow().len()
     }
 
     fn states(&self, index: usize) -> &[f64] {
@@ -263,11 +275,11 @@ impl Sampled {
 
     /// Extremes of a gap. Which sign its rate has where two intervals meet, as at an extreme of another gap that is opposite to it, is rounding:
     /// it is one for both of them.
-    fn gap(&self, mut scan: Scan<'_, '_, '_>, row: &[Seen], end: &mut Option<Look>) {
+    fn gap(&self, mut scan: Scan<'_, '_, '_>, end: &mut Option<Look>) {
         let last = self.phases.len() - 1;
         let at = |scan: &Scan<'_, '_, '_>, index: usize| {
             let phase = self.phases[index];
-            scan.signal.of_states(phase, self.states(index), row)
+            scan.signal.of_states(phase, self.states(index))
         };
         let mut before = at(&scan, 0);
         if let Some(end) = end.filter(|end| (end.x - before.x).abs() <= SEEN_TWICE) {
@@ -334,14 +346,14 @@ impl Scan<'_, '_, '_> {
     fn between(&mut self, before: Look, next: Look, halvings: usize) {
         let base = self.motion.equations.values.base;
         let cubic = Cubic::of(&before, &next, base);
-        let fast = self.signal.fast(cubic.h);
+        let fast = self.signal.fast_from(cubic.h, before.x);
         let changes = (before.rate > 0.0) != (next.rate > 0.0);
         let sure = if changes {
             cubic.turns_once(fast)
         } else {
             cubic.goes_on(fast)
         };
-        if fast != Fast::default() && !sure {
+        if !fast.is_none() && !sure {
             self.halve(before, next, 0.5, halvings);
             return;
         }
@@ -365,7 +377,7 @@ impl Scan<'_, '_, '_> {
     }
 
     fn halve(&mut self, before: Look, next: Look, part: f64, halvings: usize) {
-        let middle = self.signal.at(before.x + part * (next.x - before.x));
+        let middle = self.signal.at_shared(before.x + part * (next.x - before.x));
         self.between(before, middle, halvings);
         self.between(middle, next, halvings);
     }

@@ -27,7 +27,12 @@ pub(super) struct Forced<'e> {
 
 impl<'e> Forced<'e> {
     /// At a part of an interval; the room has the weights of what is known then.
-    pub(super) fn new(equations: &'e Equations, interval: usize, psi: f64, room: &mut Room) -> Self {
+    pub(super) fn new(
+        equations: &'e Equations,
+        interval: usize,
+        psi: f64,
+        room: &mut Room,
+    ) -> Self {
         let Equations {
             values,
             skeleton,
@@ -44,8 +49,8 @@ impl<'e> Forced<'e> {
             nodes.partway(psi, points_for(fastest * nodes.widest()), &mut room.partway);
         }
         nodes.through_ends(psi, &mut room.weights);
-        let alone = of.active.len() == 1
-            && values.contacts[of.active[0].contact].input.is_constant();
+        let alone =
+            of.active.len() == 1 && values.contacts[of.active[0].contact].input.is_constant();
         Self {
             linear: &values.linear,
             passed,

@@ -3,8 +3,9 @@
 //!
 //! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, equation (4.2).
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 
+use super::extremes::Sampled;
 use super::forced::Forced;
 use crate::contact_equation::collocation::partway::Partway;
 use crate::contact_equation::equations::Equations;
@@ -23,6 +24,8 @@ const FEW: usize = 4;
 pub(in crate::contact_equation) struct Motion<'e> {
     pub(in crate::contact_equation) equations: &'e Equations,
     room: RefCell<Room>,
+    /// Made when it is asked for.
+    sampled: OnceCell<Vec<Sampled>>,
 }
 
 /// Room for one instant.
@@ -54,6 +57,7 @@ impl<'e> Motion<'e> {
         Self {
             equations,
             room: RefCell::new(room),
+            sampled: OnceCell::new(),
         }
     }
 
@@ -264,6 +268,11 @@ impl<'e> Motion<'e> {
         let room = &mut *self.room.borrow_mut();
         self.write(interval, phase, room);
         states.copy_from_slice(&room.states);
+    }
+
+    /// Intervals with samples.
+    pub(in crate::contact_equation) fn sampled(&self) -> &[Sampled] {
+        self.sampled.get_or_init(|| Sampled::of(self))
     }
 
     /// Extremes of the coordinates and of the gaps. They are looked for once.

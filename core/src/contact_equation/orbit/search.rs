@@ -188,6 +188,16 @@ pub(super) struct Way {
     pub(super) ends: [Look; 2],
 }
 
+/// What a value may be above the cubic, without what rings too fast.
+#[derive(Debug, Clone, Copy, Default)]
+struct Slack {
+    part: Option<usize>,
+    wide: f64,
+    of: f64,
+    /// What rings too fast.
+    fast: Fast,
+}
+
 /// The largest value of a signal that is given part by part, with a sign.
 pub(super) struct Largest<'s, 'm, 'e> {
     pub(super) parts: &'s mut [Signal<'m, 'e>],
@@ -202,7 +212,27 @@ impl Largest<'_, '_, '_> {
     /// Looks for it in all ways between samples.
     pub(super) fn search(&mut self, ways: &[Way]) -> Place {
         let mut bounds: Vec<(f64, Way)> = Vec::new();
+        let mut slack = Slack::default();
         for way in ways {
+            let wide = way.ends[1].x - way.ends[0].x;
+            if slack.part != Some(way.part) || wide > slack.wide {
+                slack = self.slack(way, wide);
+            }
+            // Most ways are far from it: of a cubic no more is asked than how far it may be above its ends.
+            let [before, next] = way.ends.map(|end| self.sign * end.value);
+            let top = self.has_top(&way.ends);
+            let rise = if top {
+                way.ends[0].rate.abs().max(way.ends[1].rate.abs()) * wide / self.base
+            } else {
+                0.0
+            };
+            let [from, _] = self.parts[way.part].phases();
+            let fast = slack.fast.after((way.ends[0].x - from) / self.base);
+            let wrong = 2.0 * fast.value + 0.5 * wide / self.base * fast.rate;
+            let most = before.max(next) + rise + slack.of + wrong;
+            if !top && fast.is_none() || !self.may_exceed(most) {
+                continue;
+            }
             let bound = self.bound(way, way.ends[1].x - way.ends[0].x);
             if self.may_exceed(bound) {
                 bounds.push((bound, *way));
@@ -216,6 +246,27 @@ impl Largest<'_, '_, '_> {
             }
         }
         self.best
+    }
+
+    /// What a value may be above the cubic in all ways of a part that are no wider.
+    fn slack(&self, way: &Way, wide: f64) -> Slack {
+        let signal = &self.parts[way.part];
+        let h = wide / self.base;
+        let fast = signal.fast(h);
+        let forced = if signal.is_forced() {
+            FORETOLD * self.range
+        } else {
+            0.0
+        };
+        // What is not fast for a narrower way is in the fourth derivative there.
+        let slow = signal.fourth(0.0) * h.powi(4) / 384.0;
+        let slow = slow.min(signal.fourth(h) * h.powi(4) / 384.0 + fast.value);
+        Slack {
+            part: Some(way.part),
+            wide,
+            of: slow + forced,
+            fast,
+        }
     }
 
     fn may_exceed(&self, bound: f64) -> bool {
@@ -241,9 +292,9 @@ impl Largest<'_, '_, '_> {
         let [before, next] = way.ends;
         let cubic = Cubic::of(&before, &next, self.base);
         let signal = &self.parts[way.part];
-        let fast = signal.fast(cubic.h);
+        let fast = signal.fast_from(cubic.h, before.x);
         let top = self.has_top(&way.ends);
-        if !top && fast == Fast::default() {
+        if !top && fast.is_none() {
             return f64::NEG_INFINITY;
         }
         let ends = (self.sign * before.value).max(self.sign * next.value);
@@ -265,8 +316,8 @@ impl Largest<'_, '_, '_> {
     fn look(&mut self, way: Way, wide: f64) {
         let cubic = Cubic::of(&way.ends[0], &way.ends[1], self.base);
         let signal = &mut self.parts[way.part];
-        let fast = signal.fast(cubic.h);
-        if fast == Fast::default() || cubic.turns_once(fast) {
+        let fast = signal.fast_from(cubic.h, way.ends[0].x);
+        if fast.is_none() || cubic.turns_once(fast) {
             if !self.has_top(&way.ends) {
                 return;
             }
@@ -274,7 +325,7 @@ impl Largest<'_, '_, '_> {
             self.see(&found);
             return;
         }
-        let middle = signal.at(0.5 * (way.ends[0].x + way.ends[1].x));
+        let middle = signal.at_shared(0.5 * (way.ends[0].x + way.ends[1].x));
         self.see(&middle);
         let halves = [[way.ends[0], middle], [middle, way.ends[1]]];
         let halves = halves.map(|ends| Way { ends, ..way });

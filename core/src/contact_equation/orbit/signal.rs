@@ -12,9 +12,12 @@
 //!
 //! Source: Meirovitch (2001), Fundamentals of Vibrations, section 7.15.
 
+use std::borrow::Cow;
+
 use nalgebra::Complex;
 
-use super::content::{Content, Fast, Ripples};
+use super::content::{Content, Fast, Ripples, unless_rounding};
+use super::extremes::Sampled;
 use super::motion::Motion;
 use super::sums::Exponential;
 use crate::contact_equation::linear_part::block::{Pair, times};
@@ -26,6 +29,9 @@ use crate::contact_equation::linear_part::values::{pair, turn};
 const NOTHING: f64 = 1e-19;
 /// So many of all blocks are worth the exponentials of all.
 const MANY: usize = 8;
+
+/// Few blocks are all followed where one of them takes as long as all.
+const SHARED: usize = 64;
 
 /// What is looked at.
 #[derive(Debug, Clone, Copy)]
@@ -62,8 +68,11 @@ struct Ring {
 /// (1)
 pub(in crate::contact_equation) struct Signal<'m, 'e> {
     motion: &'m Motion<'e>,
-    pub(super) interval: usize,
-    /// It is followed as the motion is: this gap, or these states of the linear part.
+    sampled: &'m Sampled,
+    interval: usize,
+    /// What it sees of the states of the linear part, where that stands.
+    row: Cow<'m, [Seen]>,
+    /// It is followed as the motion is: this gap, or its row.
     whole: Option<Whole>,
     offset: f64,
     waves: Vec<(f64, Complex<f64>)>,
@@ -76,23 +85,20 @@ pub(in crate::contact_equation) struct Signal<'m, 'e> {
     weights: Vec<f64>,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 enum Whole {
     Gap(usize),
-    Row(Vec<Seen>),
+    Row,
 }
 
 impl<'m, 'e> Signal<'m, 'e> {
     /// On an interval whose content is known.
-    pub(super) fn new(
-        motion: &'m Motion<'e>,
-        interval: usize,
-        content: &Content,
-        of: Of<'_>,
-    ) -> Self {
+    pub(super) fn new(motion: &'m Motion<'e>, sampled: &'m Sampled, of: Of<'_>) -> Self {
         let mut signal = Self {
             motion,
-            interval,
+            sampled,
+            interval: sampled.interval,
+            row: Cow::Borrowed(&[]),
             whole: None,
             offset: 0.0,
             waves: Vec::new(),
@@ -103,11 +109,11 @@ impl<'m, 'e> Signal<'m, 'e> {
             found: Found::default(),
             weights: Vec::new(),
         };
-        signal.set(content, of);
+        signal.set(&sampled.content, of);
         signal
     }
 
-    fn set(&mut self, content: &Content, of: Of<'_>) {
+    fn set(&mut self, content: &'m Content, of: Of<'_>) {
         let motion = self.motion;
         let own = &motion.equations.values;
         if let Of::Gap(contact) = of
@@ -117,30 +123,33 @@ impl<'m, 'e> Signal<'m, 'e> {
             return;
         }
         let row = match of {
-            Of::Coordinate(index) => own.linear.rows[index].clone(),
+            Of::Coordinate(index) => Cow::Borrowed(&own.linear.rows[index][..]),
             Of::Gap(contact) => {
                 self.offset = -own.contacts[contact].constant_offset();
-                own.contacts[contact].row()
+                Cow::Owned(own.contacts[contact].row())
             }
             Of::Sum(terms, constant) => {
                 self.offset = constant;
-                sum(&own.linear.rows, terms)
+                Cow::Owned(sum(&own.linear.rows, terms))
             }
         };
         let values = motion.values(self.interval);
         if motion.is_rung(self.interval) || values.has_resonance() {
-            self.whole = Some(Whole::Row(row.clone()));
+            self.whole = Some(Whole::Row);
         }
+        self.row = row;
         let row = match (of, motion.configuration(self.interval)) {
-            (Of::Coordinate(index), Some(of)) => of.values.linear.rows[index].clone(),
-            (_, Some(of)) => of.row(&row),
-            _ => row,
+            (Of::Coordinate(index), Some(of)) => Cow::Borrowed(&of.values.linear.rows[index][..]),
+            (_, Some(of)) => Cow::Owned(of.row(&self.row)),
+            _ => self.row.clone(),
         };
         self.put(content, &row);
     }
 
     /// Puts a row on what the motion is made of.
     fn put(&mut self, content: &Content, row: &[Seen]) {
+        self.ripples = Ripples::with_room(row.len());
+        self.rings.reserve(row.len());
         let (motion, interval) = (self.motion, self.interval);
         let values = motion.values(interval);
         let passed = &motion.equations.passed[interval];
@@ -173,8 +182,8 @@ impl<'m, 'e> Signal<'m, 'e> {
             let most = content.rings(seen.block);
             let of = |row: Pair| row[0].abs() * most[0] + row[1].abs() * most[1];
             self.size += of(seen.position);
-            self.ripples
-                .add(block.rate(), of(seen.position), of(seen.rate));
+            let most = [of(seen.position), of(seen.rate)];
+            self.ripples.add(block.rate(), content.decay(block), most);
         }
         self.ripples.sort();
         let order = 2 * values.linear.blocks.len();
@@ -199,9 +208,10 @@ impl<'m, 'e> Signal<'m, 'e> {
         for seen in &row {
             let most = content.rings(seen.block);
             let of = |row: Pair| row[0] * most[0] + row[1] * most[1];
-            let turns = values.linear.blocks[seen.block].rate() + turning;
+            let block = &values.linear.blocks[seen.block];
+            let most = [of(seen.position), of(seen.rate)];
             self.ripples
-                .add(turns, of(seen.position), of(seen.rate));
+                .add(block.rate() + turning, content.decay(block), most);
             self.size += of(seen.position);
         }
         self.ripples.sort();
@@ -215,8 +225,8 @@ impl<'m, 'e> Signal<'m, 'e> {
                 let [gap, rate] = self.motion.gap(*contact, self.interval, x);
                 [gap, rate * base]
             }
-            Some(Whole::Row(row)) => {
-                let [value, rate] = self.motion.seen(row, self.interval, x);
+            Some(Whole::Row) => {
+                let [value, rate] = self.motion.seen(&self.row, self.interval, x);
                 [value + self.offset, rate]
             }
             None => self.sum(x),
@@ -260,14 +270,30 @@ impl<'m, 'e> Signal<'m, 'e> {
         sum
     }
 
+    /// The same, where other signals may be looked at, too: of one that sees much the states are kept for these.
+    pub(super) fn at_shared(&mut self, x: f64) -> Look {
+        let blocks = self.motion.equations.values.linear.blocks.len();
+        let many = match self.whole {
+            Some(Whole::Gap(_)) => true,
+            Some(Whole::Row) => MANY * self.row.len() > blocks || blocks <= SHARED,
+            None => MANY * self.rings.len() > blocks + MANY,
+        };
+        if many {
+            let sampled = self.sampled;
+            sampled.at(self.motion, x, |states| self.of_states(x, states))
+        } else {
+            self.at(x)
+        }
+    }
+
     /// The same in states at a phase.
-    pub(super) fn of_states(&self, x: f64, states: &[f64], row: &[Seen]) -> Look {
+    pub(super) fn of_states(&self, x: f64, states: &[f64]) -> Look {
         let [value, rate] = if let Some(Whole::Gap(contact)) = &self.whole {
             let base = self.motion.equations.values.base;
             let [gap, rate] = self.motion.gap_of(*contact, x, states);
             [gap, rate * base]
         } else {
-            let [value, rate] = of_states(row, states);
+            let [value, rate] = of_states(&self.row, states);
             [value + self.offset, rate]
         };
         Look { x, value, rate }
@@ -320,12 +346,21 @@ impl<'m, 'e> Signal<'m, 'e> {
 
     /// Forces at nodes are in it.
     pub(super) fn is_forced(&self) -> bool {
-        !self.motion.equations.passed[self.interval].forced.is_empty()
+        !self.motion.equations.passed[self.interval]
+            .forced
+            .is_empty()
     }
 
-    /// What rings too fast for samples that are so far apart.
+    /// What rings too fast for samples that are so far apart, while the interval lasts.
     pub(super) fn fast(&self, time: f64) -> Fast {
         self.ripples.fast(time, self.size)
+    }
+
+    /// The same from a phase on.
+    pub(super) fn fast_from(&self, time: f64, x: f64) -> Fast {
+        let [from, _] = self.phases();
+        let fast = self.fast(time).after((x - from) / self.base());
+        unless_rounding(fast, self.size)
     }
 
     /// See [`Ripples::fourth`].

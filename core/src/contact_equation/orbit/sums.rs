@@ -9,7 +9,7 @@
 //!
 //! With these, a Gauss rule of eight nodes on a part of `s`, with the phase as `s^2 (3 - 2 s)`, is compared with the same rule on its halves, which are taken where
 //! both agree to `1e-9` of the largest value, and halved again where they do not: until the parts are as short as half of a period of what rings by more than
-//! `1e-8` of the signal. What rings by less is noise of that size in the rules.
+//! `1e-6` of the signal. What rings by less is noise in the rules, which have hundreds of nodes then: of a mean it leaves some hundredth of that.
 //!
 //! Source: Davis and Rabinowitz (1984), Methods of Numerical Integration, section 6.2 (automatic integration); for (1), elementary.
 
@@ -23,7 +23,7 @@ const NODES: usize = 8;
 /// Two rules agree if they differ by this part of the largest value: the finer one has twice as many digits.
 const AGREE: f64 = 1e-9;
 /// What rings by less than this part of a signal is left to the rules.
-const RINGS: f64 = 1e-8;
+const RINGS: f64 = 1e-6;
 /// Parts of an interval in which every rule is halved once more, at most to the power of two.
 const LEAST: usize = 3;
 const MOST: usize = 14;
@@ -57,7 +57,8 @@ fn of_exponentials(of: &[Exponential], time: f64) -> [f64; 2] {
         for (place, (second, of_second)) in of[..=a].iter().zip(&grown).enumerate() {
             let both = second.z * integral(first.m + second.m, by * of_second, time);
             let conjugate = second.m.conj();
-            let apart = second.z.conj() * integral(first.m + conjugate, by * of_second.conj(), time);
+            let apart =
+                second.z.conj() * integral(first.m + conjugate, by * of_second.conj(), time);
             // Each pair is in (1) twice.
             let times = if place == a { 0.5 } else { 1.0 };
             sums[1] += times * (first.z * (both + apart)).re;
@@ -107,7 +108,9 @@ fn rule(signal: &mut Signal<'_, '_>, [begin, end]: [f64; 2], [from, to]: [f64; 2
     for (node, weight) in of.nodes.iter().zip(&of.weights) {
         let s = from + (to - from) * node;
         let weight = weight * (to - from) * (end - begin) * 6.0 * s * (1.0 - s);
-        let x = signal.at(begin + (end - begin) * s * s * (3.0 - 2.0 * s)).value;
+        let x = signal
+            .at(begin + (end - begin) * s * s * (3.0 - 2.0 * s))
+            .value;
         found.sums[0] += weight * x;
         found.sums[1] += weight * x * x;
         found.largest = found.largest.max(x.abs());
@@ -130,7 +133,8 @@ fn part(
     let length = (ends[1] - ends[0]) * (place(to) - place(from));
     let largest = rules[0].largest.max(rules[1].largest);
     let apart = |of: usize| (whole.sums[of] - rules[0].sums[of] - rules[1].sums[of]).abs();
-    let agree = apart(0) <= AGREE * largest * length && apart(1) <= AGREE * largest * largest * length;
+    let agree =
+        apart(0) <= AGREE * largest * length && apart(1) <= AGREE * largest * largest * length;
     if agree || deepest == 0 {
         for rule in rules {
             sums[0] += rule.sums[0];
@@ -176,7 +180,10 @@ mod tests {
             }
             let found = of_exponentials(&sum, time);
             for (found, exact) in found.into_iter().zip(exact) {
-                assert!((found - exact).abs() < 1e-13 * exact, "{time}: {found} {exact}");
+                assert!(
+                    (found - exact).abs() < 1e-13 * exact,
+                    "{time}: {found} {exact}"
+                );
             }
         }
     }

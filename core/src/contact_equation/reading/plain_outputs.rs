@@ -7,8 +7,7 @@ use std::f64::consts::TAU;
 
 use crate::branches::observed::Motion as Extent;
 use crate::branches::recurrence::{Recurrence, SignedPermutation};
-use crate::contact_equation::equations::Equations;
-use crate::contact_equation::orbit::extremes::{Sampled, read};
+use crate::contact_equation::orbit::extremes::read;
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::orbit::signal::Term;
 use crate::system::{Place, Signal, System, Wave};
@@ -54,15 +53,14 @@ fn plain(system: &dyn System, parameters: &[f64], omega: f64) -> Option<Vec<Plai
 
 /// What all outputs do over the period; nothing if one of them is more than a sum of coordinates.
 pub(super) fn motions(
-    equations: &Equations,
+    motion: &Motion<'_>,
     system: &dyn System,
     parameters: &[f64],
     omega: f64,
 ) -> Option<Vec<Extent>> {
     let outputs = plain(system, parameters, omega)?;
-    let motion = Motion::of(equations);
-    let sampled = Sampled::of(&motion);
-    let recurrence = equations.skeleton.recurrence();
+    let sampled = motion.sampled();
+    let recurrence = motion.equations.skeleton.recurrence();
     let found = outputs.iter().map(|output| {
         let mut whole = Extent {
             mean: Some(0.0),
@@ -72,7 +70,7 @@ pub(super) fn motions(
         let mut sums = [0.0; 2];
         for part in 0..recurrence.parts {
             let terms = image(&output.terms, &recurrence.image.power(part));
-            let found = read(&motion, &sampled, &terms, output.constant);
+            let found = read(motion, sampled, &terms, output.constant);
             whole.include(found.least);
             whole.include(found.most);
             for (sum, own) in sums.iter_mut().zip(found.integrals) {

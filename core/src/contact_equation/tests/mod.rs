@@ -7,6 +7,7 @@ mod jumps;
 mod minimal_period;
 mod moving_stiffness;
 mod order;
+mod ringing;
 mod several;
 
 use nalgebra::DMatrix;
