@@ -174,7 +174,7 @@ mod tests {
             kernels.find(&blocks, s, &mut found);
             for (r, block) in blocks.iter().enumerate() {
                 let exact = block.kernel(s);
-                let size = (exact.c.powi(2) + (block.turns() * exact.k).powi(2)).sqrt();
+                let size = exact.c.hypot(block.turns() * exact.k);
                 // An angle is known to rounding.
                 let within = 4.0 * f64::EPSILON * size * (1.0 + block.rate() * s.abs());
                 assert!((found.c[r] - exact.c).abs() <= within, "{r} {s}");

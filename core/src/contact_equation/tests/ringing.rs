@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use super::first;
+use super::solved;
 use crate::contact_equation::orbit::motion::Motion;
 use crate::system::System;
 use crate::time;
@@ -50,7 +50,7 @@ fn sampled(
 fn a_fast_mode_that_rings_is_seen() {
     let omega = 1.1;
     let system = Fast { share: 0.4 };
-    let (mut equations, u) = first(&system, None, omega, [16, 1]);
+    let (mut equations, u) = solved(&system, omega, 24);
     equations.compute(&u, false);
     let motion = Motion::of(&equations);
     let begin = equations.skeleton.begin;
@@ -75,7 +75,7 @@ fn a_fast_mode_that_does_not_ring_costs_no_samples() {
     let omega = 1.1;
     // The stop does not move it: it is at rest.
     let system = Fast { share: 0.0 };
-    let (mut equations, u) = first(&system, None, omega, [16, 1]);
+    let (mut equations, u) = solved(&system, omega, 24);
     equations.compute(&u, false);
     let motion = Motion::of(&equations);
     let begin = equations.skeleton.begin;
@@ -111,7 +111,8 @@ fn outputs_in_closed_form_are_those_of_samples() {
     let omega = 1.1;
     let system = Read {};
     let request = crate::FrequencyResponse::of(&system).by(crate::ContactEquation::new());
-    let point = request.orbit(omega).unwrap();
+    let branch = request.from(omega).to(1.11).stability(false).run().unwrap();
+    let point = &branch.points[0];
     let found = point.observed.outputs[0];
     let mut flow = time::of(&system, omega, 1e-12).unwrap();
     let mut state = point.orbit.states[..4].to_vec();
