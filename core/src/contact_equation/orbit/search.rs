@@ -142,6 +142,9 @@ pub(super) fn extreme(signal: &mut Signal<'_, '_>, ends: [Look; 2], base: f64) -
         high
     };
     for _ in 0..STEPS {
+        if here.rate == 0.0 {
+            return here;
+        }
         let inside = |x: f64| x > low.x && x < high.x;
         let beside = last.and_then(|last| beyond(&last, &here, base));
         let wide = high.x - low.x;
@@ -150,7 +153,7 @@ pub(super) fn extreme(signal: &mut Signal<'_, '_>, ends: [Look; 2], base: f64) -
             None => low.x + Cubic::of(&low, &high, base).turn() * wide,
         };
         let step = next - here.x;
-        if step.abs() <= near || !inside(next) || here.rate == 0.0 {
+        if step.abs() <= near || !inside(next) {
             // So near the rate is a straight line.
             here.value += 0.5 * here.rate * step / base;
             here.x = next.clamp(low.x, high.x);
