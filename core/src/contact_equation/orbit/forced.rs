@@ -95,7 +95,8 @@ impl<'e> Forced<'e> {
     pub(super) fn add(&self, room: &mut Room) {
         let order = room.states.len();
         let blocks = &self.linear.blocks;
-        let mut slow = room.states.clone();
+        let mut slow = std::mem::take(&mut room.slow);
+        slow.clone_from(&room.states);
         let targets = self.passed.forced.chunks_exact(order);
         for (weight, forced) in room.weights.iter().zip(targets) {
             for (state, forced) in slow.iter_mut().zip(forced) {
@@ -103,7 +104,8 @@ impl<'e> Forced<'e> {
             }
         }
         if self.slow {
-            room.states = slow;
+            std::mem::swap(&mut room.states, &mut slow);
+            room.slow = slow;
             return;
         }
         self.ring(room);
@@ -116,6 +118,7 @@ impl<'e> Forced<'e> {
                 }
             }
         }
+        room.slow = slow;
     }
 
     /// Leaves in `rung` what forces have done to all pairs, as if they were fast.

@@ -39,6 +39,7 @@ pub(super) struct Room {
     pub(super) partway: Partway,
     pub(super) kernels: Found,
     pub(super) rung: Vec<f64>,
+    pub(super) slow: Vec<f64>,
 }
 
 impl<'e> Motion<'e> {
@@ -53,6 +54,7 @@ impl<'e> Motion<'e> {
             partway: Partway::default(),
             kernels: Found::default(),
             rung: Vec::new(),
+            slow: Vec::new(),
         };
         Self {
             equations,
