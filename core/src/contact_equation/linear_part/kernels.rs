@@ -176,7 +176,7 @@ mod tests {
                 let exact = block.kernel(s);
                 let size = exact.c.hypot(block.turns() * exact.k);
                 // An angle is known to rounding.
-                let within = 4.0 * f64::EPSILON * size * (1.0 + block.rate() * s.abs());
+                let within = 4.0 * f64::EPSILON * size * (1.0 + block.rate() * s.abs()) + 1e-300;
                 assert!((found.c[r] - exact.c).abs() <= within, "{r} {s}");
                 let k = (found.k[r] - exact.k).abs();
                 assert!(k <= 4.0 * f64::EPSILON * exact.k.abs() || k * block.turns() <= within);

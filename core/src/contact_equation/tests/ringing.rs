@@ -3,11 +3,14 @@
 
 use std::f64::consts::TAU;
 
-use super::solved;
+use super::first;
+use crate::branches::point::Point;
+use crate::contact_equation::orbit::extremes::Sampled;
 use crate::contact_equation::orbit::motion::Motion;
 use crate::system::System;
 use crate::time;
 use crate::time::Stretch;
+use crate::{ContactEquation, FrequencyResponse};
 
 crate::oscillator! {
     /// A slow mode and one that is two hundred times as fast, damped so little that it rings through the period where the stop makes it ring.
@@ -46,27 +49,29 @@ fn sampled(
     found
 }
 
+/// The first orbit of a branch.
+fn orbit(system: &dyn System, omega: f64) -> Point {
+    let request = FrequencyResponse::of(system).by(ContactEquation::new());
+    let request = request.from(omega).to(1.01 * omega).stability(false);
+    let mut branch = request.run().unwrap();
+    branch.points.remove(0)
+}
+
 #[test]
 fn a_fast_mode_that_rings_is_seen() {
     let omega = 1.1;
     let system = Fast { share: 0.4 };
-    let (mut equations, u) = solved(&system, omega, 24);
-    equations.compute(&u, false);
-    let motion = Motion::of(&equations);
-    let begin = equations.skeleton.begin;
-    let mut state = vec![0.0; 4];
-    motion.at(begin, &mut state);
-    let found = &motion.extremes().coordinates;
+    let point = orbit(&system, omega);
+    let state = &point.orbit.states[..4];
     for coordinate in 0..2 {
-        let dense = sampled(&system, &state, begin, omega, |state| state[coordinate]);
+        let dense = sampled(&system, state, 0.0, omega, |state| state[coordinate]);
         let size = dense[1] - dense[0];
-        for (found, dense) in found[coordinate].iter().zip(dense) {
-            // Samples are a hundredth of a radian of the fast mode apart.
-            let apart = (found.value - dense).abs();
-            assert!(apart < 1e-4 * size, "{coordinate}: {} {dense}", found.value);
-        }
-        assert!(found[coordinate][0].value <= dense[0] + 1e-9 * size);
-        assert!(found[coordinate][1].value >= dense[1] - 1e-9 * size);
+        let found = &point.observed.motions[coordinate];
+        // Samples are a hundredth of a radian of the fast mode apart.
+        assert!((found.minimum - dense[0]).abs() < 1e-4 * size);
+        assert!((found.maximum - dense[1]).abs() < 1e-4 * size);
+        assert!(found.minimum <= dense[0] + 1e-6 * size);
+        assert!(found.maximum >= dense[1] - 1e-6 * size);
     }
 }
 
@@ -75,23 +80,18 @@ fn a_fast_mode_that_does_not_ring_costs_no_samples() {
     let omega = 1.1;
     // The stop does not move it: it is at rest.
     let system = Fast { share: 0.0 };
-    let (mut equations, u) = solved(&system, omega, 24);
+    let point = orbit(&system, omega);
+    let state = &point.orbit.states[..4];
+    let dense = sampled(&system, state, 0.0, omega, |state| state[0]);
+    let found = &point.observed.motions[0];
+    assert!((found.minimum - dense[0]).abs() < 1e-6);
+    assert!((found.maximum - dense[1]).abs() < 1e-6);
+    // Eight to its shortest period would be two thousand.
+    let (mut equations, u) = first(&system, None, omega, [16, 1]);
     equations.compute(&u, false);
     let motion = Motion::of(&equations);
-    let begin = equations.skeleton.begin;
-    let mut state = vec![0.0; 4];
-    motion.at(begin, &mut state);
-    let found = &motion.extremes().coordinates;
-    let dense = sampled(&system, &state, begin, omega, |state| state[0]);
-    for (found, dense) in found[0].iter().zip(dense) {
-        assert!(
-            (found.value - dense).abs() < 1e-7,
-            "{} {dense}",
-            found.value
-        );
-    }
-    // Eight to its shortest period would be two thousand.
-    let samples: usize = motion.sampled().iter().map(|sampled| sampled.count()).sum();
+    motion.extremes();
+    let samples: usize = motion.sampled().iter().map(Sampled::count).sum();
     assert!(samples < 200, "{samples}");
 }
 
