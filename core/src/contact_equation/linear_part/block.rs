@@ -24,6 +24,8 @@ pub(in crate::contact_equation) type Square = [[f64; 2]; 2];
 /// Two states.
 pub(in crate::contact_equation) type Pair = [f64; 2];
 
+/// Exponents nearer to each other than this part of them are not told apart.
+const APART: f64 = 1e-3;
 /// Below this `d s^2` series take the place of sine and cosine.
 const SMALL: f64 = 0.1;
 /// Points of the rule for (2), and the angle that the fastest factor turns by between one and the next such rule.
@@ -106,9 +108,45 @@ impl Block {
         self.mean == 0.0 && self.square == 0.0
     }
 
+    /// `m`
+    pub(super) fn mean(&self) -> f64 {
+        self.mean
+    }
+
     /// Size of the faster exponent.
     pub(in crate::contact_equation) fn rate(&self) -> f64 {
         self.mean.abs() + self.root
+    }
+
+    /// Bounds of both states within a time from these, if nothing acts on them.
+    pub(in crate::contact_equation) fn bound(&self, x: Pair, time: f64) -> Pair {
+        let turned = times(self.deviation, x);
+        let grows = self.mean + self.square.max(0.0).sqrt();
+        let growth = (grows * time).exp().max(1.0);
+        [0, 1].map(|i| {
+            if self.square < 0.0 && self.root * time > 1.0 {
+                growth * x[i].hypot(turned[i] / self.root)
+            } else {
+                // Of what hardly turns a straight line is more.
+                growth * (x[i].abs() + turned[i].abs() * time.min(1.0 / self.root))
+            }
+        })
+    }
+
+    /// The exponent of what decays most slowly; zero where it grows.
+    pub(in crate::contact_equation) fn slowest(&self) -> f64 {
+        (self.mean + self.square.max(0.0).sqrt()).min(0.0)
+    }
+
+    /// `-A^-1` of a constant load; nothing where an exponent is zero.
+    pub(in crate::contact_equation) fn held(&self, load: Pair) -> Pair {
+        let determinant = self.mean * self.mean - self.square;
+        if determinant.abs() <= f64::EPSILON * self.rate().powi(2) || determinant == 0.0 {
+            return [0.0; 2];
+        }
+        // A^-1 = (m - D) / (m^2 - d)
+        let turned = times(self.deviation, load);
+        [0, 1].map(|i| (turned[i] - self.mean * load[i]) / determinant)
     }
 
     /// The faster of what decays, whether it oscillates or not.
@@ -163,6 +201,30 @@ impl Block {
             c: decay * c,
             k: decay * k,
         }
+    }
+
+    /// `a c(s) + b k(s)` as real parts of two exponentials `z e^(m s)`; `None` where both are nearly one.
+    pub(in crate::contact_equation) fn exponentials(
+        &self,
+        [a, b]: Pair,
+    ) -> Option<[[Complex<f64>; 2]; 2]> {
+        if self.root <= APART * self.mean.abs() || self.root == 0.0 {
+            return None;
+        }
+        let by = b / self.root;
+        let real = |x: f64| Complex::new(x, 0.0);
+        Some(if self.square < 0.0 {
+            let m = Complex::new(self.mean, self.root);
+            [[Complex::new(a, -by), m], [real(0.0), m]]
+        } else {
+            let of = |sign: f64| {
+                [
+                    real(0.5 * (a + sign * by)),
+                    real(self.mean + sign * self.root),
+                ]
+            };
+            [of(1.0), of(-1.0)]
+        })
     }
 
     /// `e^(A s)`

@@ -18,8 +18,8 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::block::{Block, add};
-use super::linear::Linear;
+use super::block::{Block, Pair, add};
+use super::linear::{Linear, Seen, seen};
 use super::values::{Contact, Values, Wave};
 use crate::law::{Derivatives, On, Variation};
 use crate::system::System;
@@ -108,6 +108,29 @@ impl Configuration {
     /// States of this one from those of the linear part.
     pub(in crate::contact_equation) fn take(&self, y: &[f64], z: &mut [f64]) {
         product(&self.from, y, z);
+    }
+
+    /// What a row over states of the linear part sees of those of this one.
+    pub(in crate::contact_equation) fn row(&self, row: &[Seen]) -> Vec<Seen> {
+        self.row_by(row, |x| x)
+    }
+
+    /// The same of the largest sizes that a row may have.
+    pub(in crate::contact_equation) fn largest_row(&self, row: &[Seen]) -> Vec<Seen> {
+        self.row_by(row, f64::abs)
+    }
+
+    fn row_by(&self, row: &[Seen], of: fn(f64) -> f64) -> Vec<Seen> {
+        let along = |rows: fn(&Seen) -> Pair| {
+            self.to.column_iter().map(move |column| {
+                let entry = |seen: &Seen| {
+                    let [x, y] = rows(seen);
+                    x * of(column[2 * seen.block]) + y * of(column[2 * seen.block + 1])
+                };
+                row.iter().map(entry).sum::<f64>()
+            })
+        };
+        seen(along(|seen| seen.position), along(|seen| seen.rate))
     }
 
     /// States of the linear part from those of this one.

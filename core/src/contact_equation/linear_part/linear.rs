@@ -13,7 +13,8 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::block::{Block, Square, add};
+use super::block::{Block, Pair, Square};
+use super::kernels::Kernels;
 use crate::numeric::spectrum::{balance, eigenvalues};
 
 /// What is smaller than this part of a matrix is rounding.
@@ -39,6 +40,41 @@ pub(in crate::contact_equation) struct Linear {
     pub(in crate::contact_equation) inverse: DMatrix<f64>,
     /// The product of the largest entries of `T` and `T^-1` in balanced coordinates, where pairs are eigenvectors; else one.
     pub(super) dependence: f64,
+    /// All blocks at one time.
+    pub(in crate::contact_equation) kernels: Kernels,
+    /// What is not zero in the rows of `T`, coordinate by coordinate: of a coordinate that is a mode one pair of states.
+    pub(in crate::contact_equation) rows: Vec<Vec<Seen>>,
+}
+
+/// What a row sees of two states: as a position, and as the rate of that.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::contact_equation) struct Seen {
+    pub(in crate::contact_equation) block: usize,
+    pub(in crate::contact_equation) position: Pair,
+    pub(in crate::contact_equation) rate: Pair,
+}
+
+/// What is not zero in two rows over all states.
+pub(in crate::contact_equation) fn seen(
+    position: impl Iterator<Item = f64>,
+    rate: impl Iterator<Item = f64>,
+) -> Vec<Seen> {
+    let mut entries = position.zip(rate);
+    let mut found = Vec::new();
+    for block in 0.. {
+        let (Some(first), Some(second)) = (entries.next(), entries.next()) else {
+            break;
+        };
+        let seen = Seen {
+            block,
+            position: [first.0, second.0],
+            rate: [first.1, second.1],
+        };
+        if seen.position != [0.0; 2] || seen.rate != [0.0; 2] {
+            found.push(seen);
+        }
+    }
+    found
 }
 
 impl Linear {
@@ -48,10 +84,20 @@ impl Linear {
         c: &DMatrix<f64>,
         k: &DMatrix<f64>,
     ) -> Option<Self> {
-        if m.nrows() == 1 {
-            return Self::of_one(m[(0, 0)], c[(0, 0)], k[(0, 0)]);
-        }
-        Self::by_real_modes(m, c, k).or_else(|| Self::by_complex_modes(m, c, k))
+        let mut linear = if m.nrows() == 1 {
+            Self::of_one(m[(0, 0)], c[(0, 0)], k[(0, 0)])
+        } else {
+            Self::by_real_modes(m, c, k).or_else(|| Self::by_complex_modes(m, c, k))
+        }?;
+        linear.kernels = Kernels::of(&linear.blocks);
+        let pairs = linear
+            .positions
+            .row_iter()
+            .zip(linear.velocities.row_iter());
+        linear.rows = pairs
+            .map(|(position, rate)| seen(position.iter().copied(), rate.iter().copied()))
+            .collect();
+        Some(linear)
     }
 
     fn of_one(m: f64, c: f64, k: f64) -> Option<Self> {
@@ -63,6 +109,8 @@ impl Linear {
             input: DMatrix::from_row_slice(2, 1, &[0.0, 1.0 / m]),
             inverse: DMatrix::identity(2, 2),
             dependence: 1.0,
+            kernels: Kernels::default(),
+            rows: Vec::new(),
         })
     }
 
@@ -117,6 +165,8 @@ impl Linear {
             input,
             inverse,
             dependence: 1.0,
+            kernels: Kernels::default(),
+            rows: Vec::new(),
         })
     }
 
@@ -150,17 +200,17 @@ impl Linear {
             inverse,
             blocks,
             dependence,
+            kernels: Kernels::default(),
+            rows: Vec::new(),
         })
     }
 
-    /// Writes `T` of states, column by column: rows of these matrices lie apart in memory. Sums have the order that they have row by row.
+    /// Writes `T` of states.
     pub(in crate::contact_equation) fn write_physical(&self, states: &[f64], physical: &mut [f64]) {
-        physical.fill(0.0);
-        let halves = physical.split_at_mut(self.positions.nrows());
-        for (matrix, half) in [(&self.positions, halves.0), (&self.velocities, halves.1)] {
-            for (column, state) in matrix.column_iter().zip(states) {
-                add(half, *state, column.as_slice());
-            }
+        let (positions, velocities) = physical.split_at_mut(self.rows.len());
+        let pairs = positions.iter_mut().zip(velocities);
+        for (row, (position, velocity)) in self.rows.iter().zip(pairs) {
+            [*position, *velocity] = of_states(row, states);
         }
     }
 
@@ -169,6 +219,17 @@ impl Linear {
         let product = &self.inverse * DVector::from_column_slice(physical);
         product.as_slice().to_vec()
     }
+}
+
+/// A position and its rate in these states.
+pub(in crate::contact_equation) fn of_states(row: &[Seen], states: &[f64]) -> [f64; 2] {
+    let mut sums = [0.0; 2];
+    for seen in row {
+        let [x, y] = [states[2 * seen.block], states[2 * seen.block + 1]];
+        sums[0] += seen.position[0] * x + seen.position[1] * y;
+        sums[1] += seen.rate[0] * x + seen.rate[1] * y;
+    }
+    sums
 }
 
 /// Pairs of states of a first-order system, and `T` of them column by column, where eigenvalues that differ by less than a part of the matrix

@@ -6,7 +6,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::block::{Block, Pair, times};
-use super::linear::Linear;
+use super::linear::{Linear, Seen, seen};
 use crate::model::layout::{ContactLayout, Layout, Term, constant};
 use crate::system::{Part, System};
 
@@ -47,13 +47,18 @@ impl Moving {
 
     /// The largest entry that it may have.
     pub(in crate::contact_equation) fn size(&self) -> f64 {
+        self.sizes().into_iter().fold(0.0, f64::max)
+    }
+
+    /// The largest that each entry may be.
+    fn sizes(&self) -> Vec<f64> {
         let entries = 0..self.constant.len();
         let of = |i: usize| {
             let waves = self.waves.iter();
             let waves = waves.map(|(_, cosine, sine)| cosine[i].abs() + sine[i].abs());
             self.constant[i].abs() + waves.sum::<f64>()
         };
-        entries.map(of).fold(0.0, f64::max)
+        entries.map(of).collect()
     }
 
     /// It does not move.
@@ -151,6 +156,33 @@ impl Contact {
     /// The highest harmonic of what moves in its gap.
     pub(in crate::contact_equation) fn harmonic(&self) -> f64 {
         self.gap.harmonic().max(self.offset.harmonic())
+    }
+
+    /// Neither its direction nor its offset moves.
+    pub(in crate::contact_equation) fn stands(&self) -> bool {
+        self.gap.is_constant() && self.offset.is_constant()
+    }
+
+    /// The offset of one that stands.
+    pub(in crate::contact_equation) fn constant_offset(&self) -> f64 {
+        self.offset.value(0.0, 0)
+    }
+
+    /// Gap and rate of one that stands, as what they see of the states.
+    pub(in crate::contact_equation) fn row(&self) -> Vec<Seen> {
+        let [gap, rate] = [&self.gap, &self.rate].map(|of| of.constant.iter().copied());
+        seen(gap, rate)
+    }
+
+    /// The largest sizes that both rows may have.
+    pub(in crate::contact_equation) fn largest(&self, base: f64) -> Vec<Seen> {
+        let (gap, mut rate) = (self.gap.sizes(), self.rate.sizes());
+        let turning = base * self.gap.harmonic();
+        rate.resize(gap.len(), 0.0);
+        for (rate, gap) in rate.iter_mut().zip(&gap) {
+            *rate += turning * gap;
+        }
+        seen(gap.into_iter(), rate.into_iter())
     }
 
     /// Gap and rate in these states, and what they are of the states as rows. There is room for `another` row.
@@ -370,6 +402,18 @@ impl Values {
                 }
             }
         }
+    }
+
+    /// The steady response of a pair at a phase.
+    pub(in crate::contact_equation) fn steady(&self, r: usize, tau: f64) -> Pair {
+        let mut sum = [0.0; 2];
+        for wave in &self.load {
+            let turn = turn(wave.harmonic * tau);
+            for (i, sum) in sum.iter_mut().enumerate() {
+                *sum += (turn * wave.steady[2 * r + i][0]).re;
+            }
+        }
+        sum
     }
 
     /// Whether there are waves in resonance.

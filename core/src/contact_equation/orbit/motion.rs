@@ -3,32 +3,43 @@
 //!
 //! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, equation (4.2).
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 
-use crate::contact_equation::collocation::nodes::{Nodes, points_for};
+use super::extremes::Sampled;
+use super::forced::Forced;
 use crate::contact_equation::collocation::partway::Partway;
 use crate::contact_equation::equations::Equations;
-use crate::contact_equation::equations::pass_results::{Extremes, Passed};
-use crate::contact_equation::linear_part::block::{Block, times};
+use crate::contact_equation::equations::pass_results::Extremes;
+use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::linear_part::configuration::Configuration;
+use crate::contact_equation::linear_part::kernels::Found;
+use crate::contact_equation::linear_part::linear::{Seen, of_states};
 use crate::contact_equation::linear_part::values::{Contact, Instant, Values, pair};
 use crate::time;
+
+/// One of so many pairs of states is worth to be followed alone.
+const FEW: usize = 4;
 
 /// The motion that the last pass has left.
 pub(in crate::contact_equation) struct Motion<'e> {
     pub(in crate::contact_equation) equations: &'e Equations,
     room: RefCell<Room>,
+    /// Made when it is asked for.
+    sampled: OnceCell<Vec<Sampled>>,
 }
 
 /// Room for one instant.
-struct Room {
-    states: Vec<f64>,
+pub(super) struct Room {
+    pub(super) states: Vec<f64>,
     rows: [Vec<f64>; 3],
-    weights: Vec<f64>,
+    pub(super) weights: Vec<f64>,
     steady: Vec<f64>,
     /// States of a configuration.
     own: Vec<f64>,
-    partway: Partway,
+    pub(super) partway: Partway,
+    pub(super) kernels: Found,
+    pub(super) rung: Vec<f64>,
+    pub(super) slow: Vec<f64>,
 }
 
 impl<'e> Motion<'e> {
@@ -41,10 +52,14 @@ impl<'e> Motion<'e> {
             steady: states(),
             own: states(),
             partway: Partway::default(),
+            kernels: Found::default(),
+            rung: Vec::new(),
+            slow: Vec::new(),
         };
         Self {
             equations,
             room: RefCell::new(room),
+            sampled: OnceCell::new(),
         }
     }
 
@@ -91,12 +106,10 @@ impl<'e> Motion<'e> {
 
     /// Writes the states within an interval.
     fn write(&self, interval: usize, phase: f64, room: &mut Room) {
-        let Equations {
-            skeleton, passed, ..
-        } = self.equations;
+        let passed = &self.equations.passed;
         let configuration = self.configuration(interval);
         let values = self.values(interval);
-        let (of, passed) = (&skeleton.intervals[interval], &passed[interval]);
+        let passed = &passed[interval];
         let [from, to] = passed.phases;
         let time = (phase - from) / values.base;
         let psi = if to > from {
@@ -105,15 +118,17 @@ impl<'e> Motion<'e> {
             0.0
         };
         values.write_steady(phase, &mut room.steady, None);
-        for (r, block) in values.linear.blocks.iter().enumerate() {
-            let free = times(block.exponential(time), pair(&passed.free, r));
+        let linear = &values.linear;
+        linear.kernels.find(&linear.blocks, time, &mut room.kernels);
+        for (r, block) in linear.blocks.iter().enumerate() {
+            let free = block.carried(room.kernels.kernel(r), pair(&passed.free, r));
             for i in 0..2 {
                 let at = 2 * r + i;
                 room.states[at] = free[i] + room.steady[at];
             }
         }
-        if !of.active.is_empty() && !passed.forced.is_empty() {
-            self.add_forced(of.nodes, passed, psi, room);
+        if !passed.forced.is_empty() {
+            Forced::new(self.equations, interval, psi, room).add(room);
         }
         values.add_resonant(from, time, &mut room.states);
         if let Some(of) = configuration {
@@ -123,57 +138,59 @@ impl<'e> Motion<'e> {
     }
 
     /// What has the forces of an interval, where they are affine.
-    fn configuration(&self, interval: usize) -> Option<&'e Configuration> {
+    pub(super) fn configuration(&self, interval: usize) -> Option<&'e Configuration> {
         let of = &self.equations.skeleton.intervals[interval];
         of.configuration
             .map(|index| &self.equations.configurations[index])
     }
 
     /// The linear part on an interval.
-    fn values(&self, interval: usize) -> &'e Values {
+    pub(super) fn values(&self, interval: usize) -> &'e Values {
         let own = &self.equations.values;
         self.configuration(interval).map_or(own, |of| &of.values)
     }
 
-    /// Adds what the forces of an interval have done to the states up to a part of it. Of slow pairs the polynomial through what is known at the
-    /// targets tells it. Fast ones ring between the targets, and are followed there: with (1) of [`integrals`](crate::contact_equation::equations::integrals), up to
-    /// any place.
-    fn add_forced(&self, nodes: &'static Nodes, passed: &Passed, psi: f64, room: &mut Room) {
+    /// Forces at nodes make pairs of states ring between these.
+    pub(super) fn is_rung(&self, interval: usize) -> bool {
         let Equations {
-            values, skeleton, ..
+            values,
+            skeleton,
+            passed,
+            ..
         } = self.equations;
-        let order = skeleton.order;
-        let whole = (passed.phases[1] - passed.phases[0]) / values.base;
+        let of = &skeleton.intervals[interval];
+        let [from, to] = passed[interval].phases;
+        let whole = (to - from) / values.base;
+        let blocks = values.linear.blocks.iter();
+        let fastest = blocks.map(Block::rate).fold(0.0, f64::max);
+        !passed[interval].forced.is_empty() && !of.nodes.follows(fastest * whole.abs())
+    }
+
+    /// A position and its rate at a phase within an interval, of the pairs that a row sees: where these are few, they alone are followed.
+    pub(super) fn seen(&self, row: &[Seen], interval: usize, phase: f64) -> [f64; 2] {
+        let room = &mut *self.room.borrow_mut();
+        let values = self.values(interval);
         let blocks = &values.linear.blocks;
-        let turns = |block: &Block| block.rate() * whole.abs();
-        let fastest = blocks.iter().map(turns).fold(0.0, f64::max);
-        if !nodes.follows(fastest) {
-            let turn = fastest * nodes.widest();
-            nodes.partway(psi, points_for(turn), &mut room.partway);
+        let alone = FEW * row.len() <= blocks.len() && !values.has_resonance();
+        if !alone || self.configuration(interval).is_some() {
+            self.write(interval, phase, room);
+            return of_states(row, &room.states);
         }
-        nodes.through_ends(psi, &mut room.weights);
-        for (r, block) in blocks.iter().enumerate() {
-            if !nodes.follows(turns(block)) {
-                let n = nodes.count();
-                let load = &passed.load[2 * r * n..][..2 * n];
-                let known = room.partway.done.map_or([0.0; 2], |target| {
-                    pair(&passed.forced[target * order..][..order], r)
-                });
-                let forced = room
-                    .partway
-                    .carry(block, whole, known, load.split_at(n).into());
-                room.states[2 * r] += forced[0];
-                room.states[2 * r + 1] += forced[1];
-                continue;
-            }
-            for at in 2 * r..2 * r + 2 {
-                let targets = passed.forced.chunks_exact(order);
-                let pairs = room.weights.iter().zip(targets);
-                room.states[at] += pairs
-                    .map(|(weight, forced)| weight * forced[at])
-                    .sum::<f64>();
-            }
+        let passed = &self.equations.passed[interval];
+        let [from, to] = passed.phases;
+        let time = (phase - from) / values.base;
+        let forced = Forced::new(self.equations, interval, (phase - from) / (to - from), room);
+        let mut sums = [0.0; 2];
+        for seen in row {
+            let block = &blocks[seen.block];
+            let free = block.carried(block.kernel(time), pair(&passed.free, seen.block));
+            let steady = values.steady(seen.block, phase);
+            let forced = forced.of(seen.block, room);
+            let states = [0, 1].map(|i| free[i] + steady[i] + forced[i]);
+            sums[0] += seen.position[0] * states[0] + seen.position[1] * states[1];
+            sums[1] += seen.rate[0] * states[0] + seen.rate[1] * states[1];
         }
+        sums
     }
 
     /// Gap of a contact and its slope by the phase, within an interval.
@@ -223,15 +240,7 @@ impl<'e> Motion<'e> {
         let room = &mut *self.room.borrow_mut();
         self.write(interval, phase, room);
         let linear = &self.equations.values.linear;
-        let n = state.len() / 2;
-        for (i, x) in state.iter_mut().enumerate() {
-            let row = if i < n {
-                linear.positions.row(i)
-            } else {
-                linear.velocities.row(i - n)
-            };
-            *x = row.iter().zip(&room.states).map(|(a, y)| a * y).sum();
-        }
+        linear.write_physical(&room.states, state);
     }
 
     /// A coordinate and its velocity, within an interval.
@@ -248,11 +257,7 @@ impl<'e> Motion<'e> {
 
     /// A coordinate and its velocity in these states.
     pub(super) fn coordinate_of(&self, index: usize, states: &[f64]) -> [f64; 2] {
-        let linear = &self.equations.values.linear;
-        [&linear.positions, &linear.velocities].map(|matrix| {
-            let row = matrix.row(index);
-            row.iter().zip(states).map(|(a, y)| a * y).sum()
-        })
+        of_states(&self.equations.values.linear.rows[index], states)
     }
 
     /// Writes the states at a phase within an interval.
@@ -267,25 +272,25 @@ impl<'e> Motion<'e> {
         states.copy_from_slice(&room.states);
     }
 
+    /// Intervals with samples.
+    pub(in crate::contact_equation) fn sampled(&self) -> &[Sampled] {
+        self.sampled.get_or_init(|| Sampled::of(self))
+    }
+
     /// Extremes of the coordinates and of the gaps. They are looked for once.
     pub(in crate::contact_equation) fn extremes(&self) -> &'e Extremes {
         self.equations.extremes.get_or_init(|| Extremes::of(self))
     }
 
-    /// Periods in a unit of phase of the fastest that the linear part and its load do on an interval.
-    pub(super) fn fastest(&self, interval: usize) -> f64 {
+    /// Periods in a unit of phase of the fastest of the load on an interval and of the directions that move.
+    pub(super) fn moves(&self, interval: usize) -> f64 {
         let contacts = &self.equations.values.contacts;
         let values = self.values(interval);
-        let modes = values
-            .linear
-            .blocks
-            .iter()
-            .map(|block| block.turns() / values.base);
         let waves = values.load.iter().map(|wave| wave.harmonic);
         // A gap whose direction moves has the sum of both.
         let gaps = contacts.iter().map(Contact::harmonic);
         let moving = gaps.fold(0.0, f64::max);
-        (moving + modes.chain(waves).fold(1.0, f64::max)) / std::f64::consts::TAU
+        (moving + waves.fold(1.0, f64::max)) / std::f64::consts::TAU
     }
 }
 

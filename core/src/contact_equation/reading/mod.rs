@@ -21,6 +21,7 @@
 pub(super) mod errors;
 pub(super) mod minimal_period;
 pub(super) mod overlooked;
+mod plain_outputs;
 mod stretch;
 
 use nalgebra::DMatrix;
@@ -99,7 +100,7 @@ impl Run<'_> {
             },
             stability: Stability::unknown(),
             observed: Observed {
-                outputs: self.outputs(equations, value, false),
+                outputs: self.outputs_of(&motion, value, false),
                 ..Observed::extremes(motions.collect(), switches * recurrence.parts)
             },
             error: None,
@@ -108,18 +109,26 @@ impl Run<'_> {
 
     /// The outputs of the same, with more rounding of states if that is wanted.
     pub(super) fn outputs(&self, equations: &Equations, value: f64, rounded: bool) -> Vec<Extent> {
+        self.outputs_of(&Motion::of(equations), value, rounded)
+    }
+
+    fn outputs_of(&self, motion: &Motion<'_>, value: f64, rounded: bool) -> Vec<Extent> {
         let problem = &self.problem.asked;
-        let motion = Motion::of(equations);
-        let recurrence = equations.skeleton.recurrence();
+        let recurrence = motion.equations.skeleton.recurrence();
+        // Where an error is of an output, what rounding does to it is seen in states.
+        if !matches!(self.accuracy(), Accuracy::Output(_)) {
+            let (parameters, omega) = (problem.parameters_at(value), problem.omega_at(value));
+            let system = problem.system.as_ref();
+            if let Some(outputs) = plain_outputs::motions(motion, system, &parameters, omega) {
+                return outputs;
+            }
+        }
         let Some(mut outputs) = problem.output_reader(value, recurrence) else {
             return Vec::new();
         };
         for interval in 0..motion.intervals() {
             let [from, to] = motion.phases(interval);
-            let within = Read::new(Within {
-                motion: &motion,
-                interval,
-            });
+            let within = Read::new(Within { motion, interval });
             if to > from && rounded {
                 outputs.include(&Rounded(&within));
             } else if to > from {

@@ -8,6 +8,7 @@ mod minimal_period;
 mod modes;
 mod moving_stiffness;
 mod order;
+mod ringing;
 mod several;
 
 use nalgebra::DMatrix;

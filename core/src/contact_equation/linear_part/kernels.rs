@@ -1,0 +1,186 @@
+//! Exponentials of all blocks of a linear part at one time, (1) of [`block`](super::block), as loops over arrays: a library takes one sine and one
+//! exponential at a time, and many modes are asked for at many instants.
+//!
+//! An exponential is `2^n e^r` with `|r| <= ln 2 / 2` and the Taylor polynomial of degree 13, whose rest is below half of a unit in the last place.
+//! Blocks that do not oscillate are taken one by one.
+//!
+//! Source: Cody and Waite (1980), Software Manual for the Elementary Functions, chapter 6 (the reduction, in two parts).
+
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the instruction set of its caller"
+)]
+
+use multiversion::multiversion;
+
+use super::block::{Block, Kernel};
+use crate::numeric::fourier::kernels::LANES;
+use crate::numeric::fourier::phases::sines_and_cosines;
+
+/// Adding this leaves a whole number in the last bits.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
+/// `ln 2` in two parts.
+const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
+/// Exponents farther from zero than this are taken for it: `e^-700` is as good as nothing.
+const FARTHEST: f64 = 700.0;
+/// Fewer blocks are taken one by one.
+const FEW: usize = 3;
+
+/// What blocks are, as arrays of a multiple of the lanes.
+#[derive(Debug, Clone, Default)]
+pub(in crate::contact_equation) struct Kernels {
+    means: Vec<f64>,
+    roots: Vec<f64>,
+    per_root: Vec<f64>,
+    /// Those that do not oscillate.
+    others: Vec<usize>,
+}
+
+/// Room for one time, and what was found: `c` and `k` of every block.
+#[derive(Debug, Clone, Default)]
+pub(in crate::contact_equation) struct Found {
+    angles: Vec<f64>,
+    pub(in crate::contact_equation) c: Vec<f64>,
+    pub(in crate::contact_equation) k: Vec<f64>,
+    decays: Vec<f64>,
+}
+
+impl Kernels {
+    /// Of some blocks.
+    pub(in crate::contact_equation) fn of(blocks: &[Block]) -> Self {
+        let count = blocks.len().next_multiple_of(LANES);
+        let mut kernels = Self {
+            means: vec![0.0; count],
+            roots: vec![0.0; count],
+            per_root: vec![0.0; count],
+            others: Vec::new(),
+        };
+        for (r, block) in blocks.iter().enumerate() {
+            let root = block.turns();
+            if root > 0.0 && blocks.len() > FEW {
+                kernels.means[r] = block.mean();
+                kernels.roots[r] = root;
+                kernels.per_root[r] = 1.0 / root;
+            } else {
+                kernels.others.push(r);
+            }
+        }
+        kernels
+    }
+
+    /// Finds them of the same blocks at a time.
+    pub(in crate::contact_equation) fn find(&self, blocks: &[Block], s: f64, found: &mut Found) {
+        let count = self.means.len();
+        for room in [
+            &mut found.angles,
+            &mut found.c,
+            &mut found.k,
+            &mut found.decays,
+        ] {
+            room.resize(count, 0.0);
+        }
+        if self.others.len() < blocks.len() {
+            let angles = found.angles.iter_mut().zip(&self.roots);
+            angles.for_each(|(angle, root)| *angle = root * s);
+            sines_and_cosines(&found.angles, &mut found.k, &mut found.c);
+            decay(&self.means, &self.per_root, s, [&mut found.c, &mut found.k]);
+        }
+        for &r in &self.others {
+            let Kernel { c, k } = blocks[r].kernel(s);
+            (found.c[r], found.k[r]) = (c, k);
+        }
+    }
+}
+
+impl Found {
+    /// That of a block.
+    pub(in crate::contact_equation) fn kernel(&self, r: usize) -> Kernel {
+        Kernel {
+            c: self.c[r],
+            k: self.k[r],
+        }
+    }
+}
+
+/// Cosines times what decays, and sines times that over their roots.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn decay(means: &[f64], per_root: &[f64], s: f64, [c, k]: [&mut [f64]; 2]) {
+    let (means, _) = means.as_chunks::<LANES>();
+    let (per_root, _) = per_root.as_chunks::<LANES>();
+    let (c, _) = c.as_chunks_mut::<LANES>();
+    let (k, _) = k.as_chunks_mut::<LANES>();
+    for (((means, per_root), c), k) in means.iter().zip(per_root).zip(c).zip(k) {
+        for j in 0..LANES {
+            let x = (means[j] * s).clamp(-FARTHEST, FARTHEST);
+            let shifted = x * std::f64::consts::LOG2_E + WHOLE;
+            let n = shifted - WHOLE;
+            let r = (x - n * LN_2[0]) - n * LN_2[1];
+            let sum = exponential(r);
+            let power = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
+            let decay = sum * power;
+            c[j] *= decay;
+            k[j] *= decay * per_root[j];
+        }
+    }
+}
+
+/// `e^r` by its series.
+#[inline(always)]
+fn exponential(r: f64) -> f64 {
+    const PER: [f64; 14] = [
+        1.0,
+        1.0,
+        1.0 / 2.0,
+        1.0 / 6.0,
+        1.0 / 24.0,
+        1.0 / 120.0,
+        1.0 / 720.0,
+        1.0 / 5040.0,
+        1.0 / 40_320.0,
+        1.0 / 362_880.0,
+        1.0 / 3_628_800.0,
+        1.0 / 39_916_800.0,
+        1.0 / 479_001_600.0,
+        1.0 / 6_227_020_800.0,
+    ];
+    let square = r * r;
+    // Pairs, so that products do not wait for each other.
+    let pair = |k: usize| PER[k] + r * PER[k + 1];
+    let high = pair(8) + square * (pair(10) + square * pair(12));
+    let low = pair(0) + square * (pair(2) + square * (pair(4) + square * pair(6)));
+    let fourth = square * square;
+    low + fourth * fourth * high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_at_once_are_those_one_by_one() {
+        let mut blocks: Vec<Block> = (0..13)
+            .map(|r| {
+                let w = 1.3_f64.powi(3 * r);
+                Block::new([[0.0, 1.0], [-w * w, -0.02 * w]])
+            })
+            .collect();
+        blocks.push(Block::new([[0.0, 1.0], [0.0, 0.0]]));
+        blocks.push(Block::new([[-0.3, 2.0], [-2.0, -0.3]]));
+        blocks.push(Block::new([[0.0, 1.0], [-1.0, 0.2]]));
+        blocks.push(Block::new([[0.0, 1.0], [-1.0, -7.0]]));
+        let kernels = Kernels::of(&blocks);
+        let mut found = Found::default();
+        for s in [-0.7, 0.0, 1e-9, 0.01, 0.8, 3.0, 40.0] {
+            kernels.find(&blocks, s, &mut found);
+            for (r, block) in blocks.iter().enumerate() {
+                let exact = block.kernel(s);
+                let size = exact.c.hypot(block.turns() * exact.k);
+                // An angle is known to rounding.
+                let within = 4.0 * f64::EPSILON * size * (1.0 + block.rate() * s.abs()) + 1e-300;
+                assert!((found.c[r] - exact.c).abs() <= within, "{r} {s}");
+                let k = (found.k[r] - exact.k).abs();
+                assert!(k <= 4.0 * f64::EPSILON * exact.k.abs() || k * block.turns() <= within);
+            }
+        }
+    }
+}

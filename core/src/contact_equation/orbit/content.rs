@@ -1,0 +1,231 @@
+//! How much each mode rings on an interval, and what of that a signal sees that changes faster than in a given time.
+//!
+//! The motion of a pair of states is what the load and the forces hold it at, and what rings about that: the free part `y`, and on an interval with
+//! forces at nodes what `X` of these is more than at rest,
+//!
+//! ```text
+//! y = e^(A t) y_0,    X + A^-1 B f                                                                             (1)
+//! ```
+//!
+//! With (1) of [`block`](crate::contact_equation::linear_part::block), a state `i` of what rings is at most, while it does not grow,
+//!
+//! ```text
+//! |c y_i + k (D y)_i| <= sqrt(y_i^2 + (D y)_i^2 / |d|)                                                          (2)
+//! ```
+//!
+//! The second part of (1) is looked at at the nodes: it holds some of what the mode does as slowly as its force, so that more rings than does,
+//! which costs instants and loses nothing.
+//!
+//! Source: Higham (2008), Functions of Matrices, section 1.2; Moore, Kearfott and Cloud (2009), Introduction to Interval Analysis, section 5.4 (bounds
+//! that tell where there is nothing to look for).
+
+use std::f64::consts::FRAC_PI_4;
+
+use super::motion::Motion;
+use crate::contact_equation::linear_part::block::{Block, Pair};
+use crate::contact_equation::linear_part::values::pair;
+
+/// What turns by less between two samples is followed by them.
+const FOLLOWED: f64 = FRAC_PI_4;
+/// What changes a signal by less than this part of its largest is rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// What rings on an interval.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Content {
+    /// By pairs, (2) of both states.
+    rings: Vec<Pair>,
+    /// Nothing but what is free rings, so that it decays.
+    decays: bool,
+}
+
+impl Content {
+    pub(super) fn of(motion: &Motion<'_>, interval: usize) -> Self {
+        let passed = &motion.equations.passed[interval];
+        let values = motion.values(interval);
+        let [from, to] = passed.phases;
+        let whole = (to - from) / values.base;
+        let blocks = &values.linear.blocks;
+        let free = |(r, block): (usize, &Block)| block.bound(pair(&passed.free, r), whole);
+        let mut rings: Vec<Pair> = blocks.iter().enumerate().map(free).collect();
+        let count = motion.equations.skeleton.intervals[interval].nodes.count();
+        let forced = passed.forced.chunks_exact(2 * blocks.len());
+        for (node, forced) in forced.enumerate().take(count) {
+            for (r, (block, most)) in blocks.iter().zip(&mut rings).enumerate() {
+                let load = [0, 1].map(|i| passed.load[(2 * r + i) * count + node]);
+                let held = block.held(load);
+                let rings = [0, 1].map(|i| forced[2 * r + i] - held[i]);
+                let bound = block.bound(rings, whole);
+                for i in 0..2 {
+                    most[i] = most[i].max(bound[i]);
+                }
+            }
+        }
+        if !passed.forced.is_empty() {
+            // What is free and what forces have made ring may add up.
+            rings
+                .iter_mut()
+                .for_each(|most| *most = most.map(|x| 2.0 * x));
+        }
+        Self {
+            rings,
+            decays: passed.forced.is_empty(),
+        }
+    }
+
+    /// Of two states.
+    pub(super) fn rings(&self, block: usize) -> Pair {
+        self.rings[block]
+    }
+
+    /// How what rings in a block decays.
+    pub(super) fn decay(&self, block: &Block) -> f64 {
+        if self.decays { block.slowest() } else { 0.0 }
+    }
+}
+
+/// What a mode does to a signal.
+#[derive(Debug, Clone, Copy)]
+struct Ripple {
+    /// How fast it turns or decays.
+    turns: f64,
+    /// Bounds of its values and of their rates.
+    value: f64,
+    rate: f64,
+    /// How they decay.
+    mean: f64,
+}
+
+/// Bounds of what in a signal is too fast to be followed by samples: of its values, their rates and the rates of these.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Fast {
+    pub(super) value: f64,
+    pub(super) rate: f64,
+    pub(super) bend: f64,
+    /// All of it decays at least so fast.
+    mean: f64,
+}
+
+impl Fast {
+    /// A time later.
+    pub(super) fn after(self, time: f64) -> Self {
+        if self.mean == 0.0 || self.value == 0.0 {
+            return self;
+        }
+        let decay = (self.mean * time).exp();
+        Self {
+            value: decay * self.value,
+            rate: decay * self.rate,
+            bend: decay * self.bend,
+            ..self
+        }
+    }
+
+    /// There is nothing.
+    pub(super) fn is_none(&self) -> bool {
+        self.value == 0.0
+    }
+}
+
+/// What rings in a signal, the fastest first.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Ripples {
+    of: Vec<Ripple>,
+    /// Sums up to each.
+    sums: Vec<Fast>,
+    /// Bound of the fourth derivative of each and all that are slower.
+    fourth: Vec<f64>,
+    /// The same of what does not ring, and a bound of its rates.
+    steady: f64,
+    moves: f64,
+}
+
+impl Ripples {
+    /// Of so many modes at most.
+    pub(super) fn with_room(count: usize) -> Self {
+        Self {
+            of: Vec::with_capacity(count),
+            sums: Vec::with_capacity(count),
+            fourth: Vec::with_capacity(count + 1),
+            ..Self::default()
+        }
+    }
+
+    pub(super) fn add(&mut self, turns: f64, mean: f64, [value, rate]: [f64; 2]) {
+        if value > 0.0 || rate > 0.0 {
+            self.of.push(Ripple {
+                turns,
+                value,
+                rate,
+                mean,
+            });
+        }
+    }
+
+    /// What does not ring: a wave, and how fast it turns.
+    pub(super) fn add_wave(&mut self, turns: f64, value: f64) {
+        self.steady += value * turns.powi(4);
+        self.moves += value * turns;
+    }
+
+    pub(super) fn sort(&mut self) {
+        self.of.sort_unstable_by(|a, b| b.turns.total_cmp(&a.turns));
+        self.sums.clear();
+        let mut sum = Fast {
+            mean: f64::NEG_INFINITY,
+            ..Fast::default()
+        };
+        for ripple in &self.of {
+            sum.value += ripple.value;
+            sum.rate += ripple.rate;
+            sum.bend += ripple.rate * ripple.turns;
+            sum.mean = sum.mean.max(ripple.mean);
+            self.sums.push(sum);
+        }
+        self.fourth.clear();
+        self.fourth.resize(self.of.len() + 1, self.steady);
+        for place in (0..self.of.len()).rev() {
+            let Ripple { turns, value, .. } = self.of[place];
+            self.fourth[place] = self.fourth[place + 1] + value * turns.powi(4);
+        }
+    }
+
+    fn count(&self, time: f64) -> usize {
+        self.of.partition_point(|of| of.turns * time > FOLLOWED)
+    }
+
+    /// What turns too fast for samples that are so far apart; nothing where it is rounding of a signal of this size.
+    pub(super) fn fast(&self, time: f64, size: f64) -> Fast {
+        let count = self.count(time);
+        let fast = count.checked_sub(1).map(|last| self.sums[last]);
+        fast.map_or(Fast::default(), |fast| unless_rounding(fast, size))
+    }
+
+    /// A bound of the fourth derivative of what is followed by samples that are so far apart, forces at nodes left out.
+    pub(super) fn fourth(&self, time: f64) -> f64 {
+        self.fourth[self.count(time)]
+    }
+
+    /// How fast turns what, with all that is faster, may be more than this.
+    pub(super) fn turns_above(&self, value: f64) -> f64 {
+        let place = self.sums.partition_point(|sum| sum.value <= value);
+        self.of.get(place).map_or(0.0, |of| of.turns)
+    }
+
+    /// How fast turns what is more than a part of all the rates.
+    pub(super) fn most(&self, part: f64) -> f64 {
+        let all = self.moves + self.sums.last().map_or(0.0, |sum| sum.rate);
+        let counts = |sum: &Fast| sum.rate <= part * all;
+        let place = self.sums.partition_point(counts);
+        self.of.get(place).map_or(0.0, |of| of.turns)
+    }
+}
+
+/// Nothing where it is rounding of a signal of this size.
+pub(super) fn unless_rounding(fast: Fast, size: f64) -> Fast {
+    if fast.value > ROUNDING * size {
+        fast
+    } else {
+        Fast::default()
+    }
+}
