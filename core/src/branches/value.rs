@@ -1,8 +1,8 @@
 //! Solutions of a branch at a value of what it varies.
 //!
 //! Where the branch turns has been located, so that it passes a value at most once between two neighbours among its points and turns.
-//! There the solution is searched along the chord of the two, from one of them or the other. Where neither leads there, as between orbits of
-//! many contacts that another method has found in longer steps, the orbit half-way is searched first.
+//! There the solution is searched along the chord of the two, from one of them. Where that leads nowhere, as between orbits of
+//! many contacts that another method has found in longer steps, it is searched from the other one, and by way of the orbit half-way.
 
 use super::branch::Branch;
 use super::point::Point;
@@ -10,10 +10,14 @@ use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 
 /// The way to a value is halved so often at most.
-const HALVINGS: usize = 5;
+const HALVINGS: usize = 3;
+/// What was found by other ways is no farther from both neighbours than they are apart, to this factor.
+const ASIDE: f64 = 1.5;
+/// The reason for which other ways are tried.
+const LOST: &str = "Lost";
 
 /// Points and turns of a branch in their order along it. Each turn comes with the number of points before it.
 pub(crate) fn chain<'p, T>(points: &'p [T], turns: &[(usize, &'p T)]) -> Vec<&'p T> {
@@ -59,17 +63,48 @@ fn divided(
     halvings: usize,
 ) -> Result<Point, Error> {
     let reason = match between([a, b], value) {
-        Err(reason) if halvings > 0 => reason,
+        Err(reason) if halvings > 0 && reason.variant() == LOST => reason,
         found => return found,
     };
-    if let Ok(found) = between([b, a], value) {
-        return Ok(found);
-    }
-    let middle = 0.5 * (a.value + value);
-    let Ok(middle) = divided(between, [a, b], middle, halvings - 1) else {
-        return Err(reason);
+    let lies_between = |found: &Point| {
+        let whole = distance(a, b);
+        [a, b]
+            .iter()
+            .all(|end| distance(end, found) <= ASIDE * whole)
     };
-    divided(between, [&middle, b], value, halvings - 1).map_err(|_| reason)
+    match between([b, a], value) {
+        Ok(found) if lies_between(&found) => return Ok(found),
+        Err(other) if other.kind() == ErrorKind::Cancelled => return Err(other),
+        _ => {}
+    }
+    let by_way_of = |middle: Point, between: &mut _| {
+        if lies_between(&middle) {
+            divided(between, [&middle, b], value, halvings - 1)
+        } else {
+            Err(reason.clone())
+        }
+    };
+    let middle = divided(between, [a, b], 0.5 * (a.value + value), halvings - 1);
+    match middle.and_then(|middle| by_way_of(middle, between)) {
+        Ok(found) if lies_between(&found) => Ok(found),
+        Err(other) if other.kind() == ErrorKind::Cancelled => Err(other),
+        _ => Err(reason),
+    }
+}
+
+/// How far the states of two orbits are apart.
+fn distance(a: &Point, b: &Point) -> f64 {
+    let [from, to] = [a, b].map(|point| point.orbit.state());
+    let entries = from.iter().zip(&to).enumerate();
+    let squares = entries.map(|(i, (from, to))| {
+        let unit = if i < a.orbit.coordinates {
+            1.0
+        } else {
+            a.orbit.omega
+        };
+        ((to - from) / unit).powi(2)
+    });
+    squares.sum::<f64>().sqrt()
 }
 
 /// Where a branch turns, each with the number of points before it, in order along the branch. A step with a fold has other events whose values

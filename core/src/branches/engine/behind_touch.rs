@@ -8,8 +8,8 @@
 //! ```
 //!
 //! of the way `s` along the branch, in units `l` of that to the end of the step, and may pass zero twice in a part of it that is small in `s`. Orbits
-//! are computed at two places in `r`, and where between these (1) or (2) of [`inside`](super::inside) come down to zero in `r`. So they are
-//! in the step behind that one, since the first may end next to the touch.
+//! are computed at two places in `r`, and where between these (1) or (2) of [`inside`](super::inside) come down to zero in `r`. The same is
+//! done in the next step, since the first may end next to the touch.
 //!
 //! Source: Nordmark (1991), Non-periodic motion caused by grazing incidence in an impact oscillator, Journal of Sound and Vibration 145 (the root);
 //! di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2.

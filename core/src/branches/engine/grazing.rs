@@ -59,6 +59,21 @@ struct Touching {
     crossed: Option<CurvePoint>,
 }
 
+impl Touching {
+    /// Found in a part of a step, between whose ends an extreme passes the level.
+    fn of(point: &CurvePoint, bend: Bend, step: Step<'_>, passage: &Passage) -> Self {
+        let crossed = if passage.before.is_clear() {
+            step.next
+        } else {
+            step.before
+        };
+        Self {
+            point: point.clone(),
+            crossed: (bend != Bend::Smooth).then(|| crossed.clone()),
+        }
+    }
+}
+
 /// A point with the extremes of its gaps.
 #[derive(Debug, Clone)]
 pub(super) struct Gaps {
@@ -88,6 +103,8 @@ impl Engine {
         if !problem.seeks_touches() {
             return;
         }
+        let touched = std::mem::take(&mut self.touched);
+        let behind = self.crossed.take();
         let earlier = self.seen.len().checked_sub(3);
         let earlier = earlier.map(|place| self.seen[place].point.clone());
         let earlier = earlier.and_then(|point| self.gaps_at(problem, &point));
@@ -95,7 +112,6 @@ impl Engine {
         let [Some(before), Some(next)] = ends else {
             return;
         };
-        let touched = std::mem::take(&mut self.touched);
         let mut parts = vec![before.clone(), next.clone()];
         let steps = earlier.and_then(|earlier| Steps::new(newton, [earlier, before, next]));
         if let Some(mut steps) = steps {
@@ -123,8 +139,8 @@ impl Engine {
         search.between_all(problem, newton, &parts);
         self.touched = search.found;
         self.bent.append(&mut search.bent);
-        let (orbits, crossed) = (search.orbits, self.crossed.take());
-        if let (Some(touch), [.., a, b]) = (crossed, &self.seen[..]) {
+        let orbits = search.orbits;
+        if let (Some(touch), [.., a, b]) = (behind, &self.seen[..]) {
             let ends = [a.clone(), b.clone()];
             let inner = self.farther_behind(problem, newton, &touch, [a, b]);
             self.record_between(problem, newton, ends, inner, after);
@@ -463,16 +479,8 @@ impl TouchSearch<'_> {
         }
         self.found.push(value);
         if extreme.bend != Bend::Corner {
-            let bends = extreme.bend != Bend::Smooth;
-            let crossed = if found[0].before.is_clear() {
-                step.next
-            } else {
-                step.before
-            };
-            self.orbits.push(Touching {
-                point: located.point.clone(),
-                crossed: bends.then(|| crossed.clone()),
-            });
+            self.orbits
+                .push(Touching::of(&located.point, extreme.bend, step, &found[0]));
         }
         let touch = Touch {
             located,

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The second difference of three successive points is trusted to a factor. Where a level is touched between two points the function may have a
-//! kink, to which no second difference is a bound. If it is convex but for that it stays above the chords of the parts beside, with slopes
+//! kink, to which no second difference is a bound. If it is convex all the same it stays above the chords of the parts beside, with slopes
 //! `m` before and `n` behind,
 //!
 //! ```text
@@ -310,7 +310,8 @@ impl Engine {
         None
     }
 
-    /// Orbits before and behind the turn in a step in which the bordered determinant changes its sign too, if it does so beside the turn.
+    /// Orbits before and behind the turn in a step in which the bordered determinant changes its sign too, if it does so beside the turn. `None` too where
+    /// orbits are not known well enough to tell.
     fn beside_turn(
         &self,
         problem: &mut dyn BranchProblem,
@@ -329,32 +330,29 @@ impl Engine {
             .position(|watched| watched.bordered)?;
         let step = step_between(pair);
         let length = newton.norm().length(step.before.scale, &step.difference());
-        let options = |width: f64| NewtonOptions {
-            tolerance: (KNOWN * width * length).min(self.options.newton.tolerance),
-            ..self.options.newton
-        };
-        let wanted = problem.vanishing();
-        let narrowest = options(BESIDE[BESIDE.len() - 1]);
-        let turn = locate(problem, newton, step, narrowest, wanted, |problem, at| {
-            problem.slope(at)
-        })?;
         let along = ArcLength::from(newton, step.before);
-        let place = along.at(&turn.point.u) / along.at(&step.next.u);
-        let mut beside = |part: f64, width: f64| {
-            let part = part + width;
-            let point = inside(
-                problem.equations(),
-                newton,
-                step,
-                part,
-                options(width.abs()),
-            )?;
-            Some(Seen::at(problem, &point, pair[0].falls))
-        };
+        let wanted = problem.vanishing();
         for width in BESIDE {
+            let options = NewtonOptions {
+                tolerance: (KNOWN * width * length).min(self.options.newton.tolerance),
+                ..self.options.newton
+            };
+            let turn = locate(problem, newton, step, options, wanted, |problem, at| {
+                problem.slope(at)
+            })?;
+            let place = along.at(&turn.point.u) / along.at(&step.next.u);
+            let mut beside = |width: f64| {
+                let part = place + width;
+                let point = inside(problem.equations(), newton, step, part, options)?;
+                Some(Seen::at(problem, &point, pair[0].falls))
+            };
             let width = width.min(0.5 * place).min(0.5 * (1.0 - place));
-            let found = [beside(place, -width)?, beside(place, width)?];
+            let found = [beside(-width)?, beside(width)?];
             let slopes = found.each_ref().map(|seen| seen.point.parameter_slope());
+            // What Newton's method leaves hides where the branch turns.
+            if turn.test.abs() > MIDDLE * slopes[0].abs().min(slopes[1].abs()) {
+                return None;
+            }
             if slopes[0] * slopes[1] >= 0.0 {
                 return None;
             }

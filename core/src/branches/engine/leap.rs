@@ -6,7 +6,8 @@
 //! each of them a gap is on the side of its level that belongs to the order of the values. Otherwise the branch has turned, and the step
 //! is made again, shorter.
 //!
-//! The same where a gap passes its level and the branch turns, or is crossed, at no place that can be found: the step leads to another limb there.
+//! So it is where a gap passes its level and the branch turns, or is crossed, at no place that can be found: test functions are continuous along a
+//! limb, but where a touch is a corner of it.
 //!
 //! Where one gap alone passes a level, the orbit is looked for if the distance from the level, a linear form of the orbit, says that it
 //! is not within the step, or hardly.
@@ -15,8 +16,8 @@ use super::Engine;
 use super::grazing_search::{Approach, Reached};
 use super::seen::{Seen, changes};
 use super::zero::is_crossing;
-use crate::branches::extreme::{Extreme, Passage, is_copy, passed};
-use crate::branches::problem::{BranchProblem, Change, Test};
+use crate::branches::extreme::{Bend, Extreme, Passage, is_copy, passed};
+use crate::branches::problem::{BranchProblem, Test};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::Newton;
 use crate::numeric::linear::dot;
@@ -32,7 +33,7 @@ const AGAIN: f64 = 0.2;
 const SHORTEST: f64 = 1e-4;
 
 impl Engine {
-    /// Whether the step to a point that is not kept yet has left out two turns. Then the walk is to go back.
+    /// Whether the step to a point that is not kept yet has left out two turns, or leads to another limb. Then the walk is to go back.
     pub(super) fn leaps(&mut self, problem: &mut dyn BranchProblem, next: &CurvePoint) -> bool {
         if !problem.seeks_touches() || problem.force_jumps() {
             return false;
@@ -55,7 +56,11 @@ impl Engine {
         let mut newton = Newton::new(problem.equations());
         let length = newton.norm().length(before.scale, &step.difference());
         let through = without_copies(passed(&here.extremes, &there.extremes));
-        if length > SHORTEST && !through.is_empty() && self.jumps(problem, &mut newton, next) {
+        if length > SHORTEST
+            && !through.is_empty()
+            && !through.iter().any(is_corner)
+            && self.jumps(problem, &mut newton, next)
+        {
             problem.count(&newton);
             self.back = Some((before, AGAIN * length));
             return true;
@@ -167,6 +172,12 @@ impl<'p> Touched<'p> {
         here.or(next.nearest(&self.extremes))
             .is_some_and(|here| here.above * elsewhere.above > 0.0 && here.above.abs() > TOUCHES)
     }
+}
+
+/// Whether the branch may turn at the touch itself.
+fn is_corner(passage: &Passage) -> bool {
+    let ends = [&passage.before, &passage.next];
+    ends.iter().any(|extreme| extreme.bend == Bend::Corner)
 }
 
 /// One passage of each that are copies of each other.

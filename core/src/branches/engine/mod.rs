@@ -272,8 +272,10 @@ impl Engine {
     ) -> Continue {
         match seen {
             Visit::Again(at) if !self.refused => {
-                // It was corrected in its new unknowns.
-                if let [seen] = &mut self.seen[..] {
+                // It was corrected, in its new unknowns or in those that it had.
+                if let Some(seen) = self.seen.last_mut()
+                    && seen.point.u.len() == at.u.len()
+                {
                     *seen = Seen::at(problem, at, seen.falls);
                 }
                 Continue::Continue(())

@@ -104,10 +104,10 @@ impl Engine {
         change: Change,
     ) -> bool {
         let search = self.search_between(pair, change, problem.points());
-        let Some(root) = search.root(problem, newton) else {
+        let Some((root, vanishes)) = search.found(problem, newton) else {
             return true;
         };
-        !(problem.vanishes(change, &root.located)
+        !(vanishes
             || search.is_smooth_crossing(problem, &root.located)
             || search.is_steep(problem, &root.located, true))
     }
@@ -219,13 +219,24 @@ impl<'s> Search<'s> {
         slopes.fold(f64::INFINITY, f64::min)
     }
 
-    /// The same with orbits that are known better.
-    fn exactly(&self) -> Self {
+    /// Where the test function changes its sign, and whether it vanishes there, with orbits that are known better where little is left of it.
+    fn found(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Option<(Root, bool)> {
+        let root = self.root(problem, newton)?;
+        if problem.vanishes(self.change, &root.located) {
+            return Some((root, true));
+        }
+        let [a, b] = self.sizes();
+        let is_little = root.located.test.abs() <= STEEP * a.min(b);
+        if self.options.tolerance <= EXACT || !is_little || is_crossing(problem, self.change) {
+            return Some((root, false));
+        }
         let options = NewtonOptions {
-            tolerance: self.options.tolerance.min(EXACT),
+            tolerance: EXACT,
             ..self.options
         };
-        Self { options, ..*self }
+        let exact = Self { options, ..*self }.root(problem, newton);
+        let exact = exact.filter(|exact| problem.vanishes(self.change, &exact.located));
+        Some(exact.map_or((root, false), |exact| (exact, true)))
     }
 
     /// What became of the zero, and where the function jumps instead. It may be `steep` where no level is a corner.
@@ -235,16 +246,9 @@ impl<'s> Search<'s> {
         newton: &mut Newton,
         steep: bool,
     ) -> (ZeroOutcome, Option<Located>) {
-        let Some(mut root) = self.root(problem, newton) else {
+        let Some((mut root, mut vanishes)) = self.found(problem, newton) else {
             return (ZeroOutcome::Unread, None);
         };
-        let mut vanishes = problem.vanishes(self.change, &root.located);
-        if !vanishes && !is_crossing(problem, self.change) {
-            let exact = self.exactly().root(problem, newton);
-            let exact = exact.filter(|exact| problem.vanishes(self.change, &exact.located));
-            vanishes = exact.is_some();
-            root = exact.unwrap_or(root);
-        }
         if !vanishes && self.is_smooth_crossing(problem, &root.located) {
             root.error += self.left_of_crossing(&root.located);
             vanishes = true;
