@@ -18,7 +18,7 @@ hertzian::oscillator! {
 }
 
 /// Masses in a row, the first of which is held, with stops of a mass: its number, the side, stiffness and distance.
-fn chain(masses: usize, ratio: f64, drive: f64, stops: &[(usize, f64, f64, f64)]) -> Structure {
+pub fn chain(masses: usize, ratio: f64, drive: f64, stops: &[(usize, f64, f64, f64)]) -> Structure {
     let stiffness = DMatrix::from_fn(masses, masses, |i, j| match i.abs_diff(j) {
         0 if i == 0 => 1.0,
         0 => 2.0,

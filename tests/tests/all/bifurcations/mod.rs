@@ -19,6 +19,7 @@ mod grazing;
 mod halved;
 mod hidden;
 mod interrupted;
+mod limbs;
 mod meeting;
 mod mirrored;
 mod narrow;

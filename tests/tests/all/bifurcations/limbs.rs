@@ -1,0 +1,73 @@
+//! Walks that could step from one limb of a branch to another beside the touch of a level: whichever way and by whatever method a branch is
+//! followed, it has the same events, reaches the end of its range, and turns at no place that was not found.
+
+use hertzian::{Branch, ContactEquation, EventKind, FrequencyResponse, Shooting, Stop, System};
+
+use crate::bifurcations::behind_touch::chain;
+
+hertzian::oscillator! {
+    /// Gears with an error of their motion, in the gap
+    Kinematic(x) {
+        law mesh(gap) { gap > 1 => gap - 1, -1 <= gap <= 1 => 0, gap < -1 => gap + 1 }
+        ddot(x) + 0.104*dot(x) + mesh(x - 0.35*sin(omega*t)) = 0.19;
+    }
+}
+
+/// Values and errors of all events, in the order of their values.
+fn events(branch: &Branch) -> Vec<(EventKind, f64, f64)> {
+    let events = branch.events.iter();
+    let mut events: Vec<_> = events
+        .map(|event| (event.kind, event.point.value, event.error))
+        .collect();
+    events.sort_by(|a, b| a.1.total_cmp(&b.1));
+    events
+}
+
+/// Every walk finds what the first one does.
+fn agrees(system: &dyn System, [from, to]: [f64; 2]) {
+    let mut first = None;
+    for ends in [[from, to], [to, from]] {
+        let request = FrequencyResponse::of(system).from(ends[0]).to(ends[1]);
+        let by_contact_equation = request.clone().by(ContactEquation::new()).run().unwrap();
+        let by_shooting = request.by(Shooting::new()).run().unwrap();
+        for branch in [by_contact_equation, by_shooting] {
+            assert_eq!(branch.stopped, Stop::ReachedEnd, "{ends:?}");
+            assert_eq!(branch.turns, [], "{ends:?}");
+            let found = events(&branch);
+            let wanted = first.get_or_insert_with(|| found.clone());
+            assert_eq!(found.len(), wanted.len(), "{ends:?}: {found:?} {wanted:?}");
+            for (found, wanted) in found.iter().zip(&*wanted) {
+                let off = (found.1 - wanted.1).abs();
+                assert!(
+                    off <= 3.0 * (found.2 + wanted.2) + 1e-14,
+                    "{found:?} {wanted:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Backwards a step of shooting leads from the branch onto a closed curve beside the touch at 0.5124.
+#[test]
+fn gears_with_an_error_of_their_motion() {
+    agrees(&Kinematic {}, [0.4, 2.3]);
+}
+
+/// Beside the touches of two equal stops steps lead to other limbs, by both methods; from one orbit to the next of the contact equation shooting
+/// needs another orbit between them.
+#[test]
+fn masses_between_two_equal_stops() {
+    let stops = [(1, 1.0, 27.0, 0.92), (1, -1.0, 27.0, 0.92)];
+    let structure = chain(3, 0.029, 0.15, &stops);
+    agrees(&structure, [0.3, 1.3]);
+    let request = FrequencyResponse::of(&structure).from(1.3).to(0.3);
+    let by_contact_equation = request.clone().by(ContactEquation::new()).run().unwrap();
+    let by_shooting = request.by(Shooting::new()).run().unwrap();
+    let [one, other] = [by_contact_equation, by_shooting].map(|branch| branch.at(0.65).unwrap());
+    assert_eq!(one.len(), other.len());
+    for (one, other) in one.iter().zip(&other) {
+        let off = (one.peak_to_peak() / other.peak_to_peak() - 1.0).abs();
+        let stated = one.error.unwrap() + other.error.unwrap();
+        assert!(off <= 3.0 * stated + 1e-13, "{off:e} {stated:e}");
+    }
+}
