@@ -175,6 +175,7 @@ impl Jacobian {
 
     /// Takes equations with pairs over, whose states are eliminated.
     pub(crate) fn take_pairs(&mut self, links: &mut PairLinks) {
+        debug_assert!(self.arrow.is_some(), "a partition with pairs has an arrow");
         if let Some(arrow) = &mut self.arrow {
             arrow.take(links);
         }

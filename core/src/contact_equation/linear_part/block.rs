@@ -25,7 +25,7 @@ pub(in crate::contact_equation) type Square = [[f64; 2]; 2];
 pub(in crate::contact_equation) type Pair = [f64; 2];
 
 /// Exponents nearer to each other than this part of them are not told apart.
-const APART: f64 = 1e-3;
+const APART: f64 = 1e-2;
 /// Below this `d s^2` series take the place of sine and cosine.
 const SMALL: f64 = 0.1;
 /// Points of the rule for (2), and the angle that the fastest factor turns by between one and the next such rule.
@@ -133,6 +133,18 @@ impl Block {
         })
     }
 
+    /// Both exponents, the larger one first, where they are real and differ.
+    pub(in crate::contact_equation) fn real_exponents(&self) -> Option<[f64; 2]> {
+        let differ = self.square > 0.0 && self.root > APART * self.mean.abs();
+        differ.then_some([self.mean + self.root, self.mean - self.root])
+    }
+
+    /// What states have of each of these, `(x +- D x / sqrt(d)) / 2`.
+    pub(in crate::contact_equation) fn real_parts(&self, x: Pair) -> [Pair; 2] {
+        let turned = times(self.deviation, x);
+        [1.0, -1.0].map(|sign| [0, 1].map(|i| 0.5 * (x[i] + sign * turned[i] / self.root)))
+    }
+
     /// The exponent of what decays most slowly; zero where it grows.
     pub(in crate::contact_equation) fn slowest(&self) -> f64 {
         (self.mean + self.square.max(0.0).sqrt()).min(0.0)
@@ -203,12 +215,13 @@ impl Block {
         }
     }
 
-    /// `a c(s) + b k(s)` as real parts of two exponentials `z e^(m s)`; `None` where both are nearly one.
+    /// `a c(s) + b k(s)` as real parts of two exponentials `z e^(m s)`; `None` where both are nearly one, or hardly change within a time: they cancel.
     pub(in crate::contact_equation) fn exponentials(
         &self,
         [a, b]: Pair,
+        time: f64,
     ) -> Option<[[Complex<f64>; 2]; 2]> {
-        if self.root <= APART * self.mean.abs() || self.root == 0.0 {
+        if self.root <= APART * self.mean.abs() || self.root * time <= APART {
             return None;
         }
         let by = b / self.root;

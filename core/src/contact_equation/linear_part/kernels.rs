@@ -21,7 +21,7 @@ use crate::numeric::fourier::phases::sines_and_cosines;
 const WHOLE: f64 = 6_755_399_441_055_744.0;
 /// `ln 2` in two parts.
 const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
-/// Exponents farther from zero than this are taken for it: `e^-700` is as good as nothing.
+/// Exponents farther from zero than this are taken for it: `e^-700` is as good as nothing, and no orbit has what grows by `e^700`.
 const FARTHEST: f64 = 700.0;
 /// Fewer blocks are taken one by one.
 const FEW: usize = 3;
@@ -42,7 +42,6 @@ pub(in crate::contact_equation) struct Found {
     angles: Vec<f64>,
     pub(in crate::contact_equation) c: Vec<f64>,
     pub(in crate::contact_equation) k: Vec<f64>,
-    decays: Vec<f64>,
 }
 
 impl Kernels {
@@ -71,12 +70,7 @@ impl Kernels {
     /// Finds them of the same blocks at a time.
     pub(in crate::contact_equation) fn find(&self, blocks: &[Block], s: f64, found: &mut Found) {
         let count = self.means.len();
-        for room in [
-            &mut found.angles,
-            &mut found.c,
-            &mut found.k,
-            &mut found.decays,
-        ] {
+        for room in [&mut found.angles, &mut found.c, &mut found.k] {
             room.resize(count, 0.0);
         }
         if self.others.len() < blocks.len() {

@@ -13,6 +13,9 @@
 //! |c y_i + k (D y)_i| <= sqrt(y_i^2 + (D y)_i^2 / |d|)                                                          (2)
 //! ```
 //!
+//! A pair with two real exponents does not turn. It has a part of each, `(y +- D y / sqrt(d)) / 2`, of which the fast one has soon decayed, and follows its
+//! forces as slowly as these change. What a wave in resonance does grows from rest, by no more than its input in the same time.
+//!
 //! The second part of (1) is looked at at the nodes: it holds some of what the mode does as slowly as its force, so that more rings than does,
 //! which costs instants and loses nothing.
 //!
@@ -30,13 +33,22 @@ const FOLLOWED: f64 = FRAC_PI_4;
 /// What changes a signal by less than this part of its largest is rounding.
 const ROUNDING: f64 = 1e-14;
 
+/// What a pair does on an interval beside what it is held at, or a part of that.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Ringing {
+    /// How fast it turns or decays.
+    pub(super) turns: f64,
+    /// The exponent that it decays with; zero where it does not.
+    pub(super) decay: f64,
+    /// (2) of both states.
+    pub(super) most: Pair,
+}
+
 /// What rings on an interval.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Content {
-    /// By pairs, (2) of both states.
-    rings: Vec<Pair>,
-    /// Nothing but what is free rings, so that it decays.
-    decays: bool,
+    /// By pairs: what turns, or both parts of what does not, and what is in resonance.
+    rings: Vec<[Ringing; 3]>,
 }
 
 impl Content {
@@ -46,42 +58,74 @@ impl Content {
         let [from, to] = passed.phases;
         let whole = (to - from) / values.base;
         let blocks = &values.linear.blocks;
-        let free = |(r, block): (usize, &Block)| block.bound(pair(&passed.free, r), whole);
-        let mut rings: Vec<Pair> = blocks.iter().enumerate().map(free).collect();
+        let free = |(r, block): (usize, &Block)| free(block, pair(&passed.free, r), whole);
+        let mut rings: Vec<[Ringing; 3]> = blocks.iter().enumerate().map(free).collect();
         let count = motion.equations.skeleton.intervals[interval].nodes.count();
         let forced = passed.forced.chunks_exact(2 * blocks.len());
+        let turning = |block: &&Block| block.real_exponents().is_none();
         for (node, forced) in forced.enumerate().take(count) {
-            for (r, (block, most)) in blocks.iter().zip(&mut rings).enumerate() {
+            let pairs = blocks.iter().zip(&mut rings).enumerate();
+            for (r, (block, rings)) in pairs.filter(|(_, (block, _))| turning(block)) {
                 let load = [0, 1].map(|i| passed.load[(2 * r + i) * count + node]);
                 let held = block.held(load);
-                let rings = [0, 1].map(|i| forced[2 * r + i] - held[i]);
-                let bound = block.bound(rings, whole);
-                for i in 0..2 {
-                    most[i] = most[i].max(bound[i]);
-                }
+                let here = [0, 1].map(|i| forced[2 * r + i] - held[i]);
+                let bound = block.bound(here, whole);
+                let most = &mut rings[0].most;
+                *most = [0, 1].map(|i| most[i].max(bound[i]));
             }
         }
         if !passed.forced.is_empty() {
-            // What is free and what forces have made ring may add up.
-            rings
-                .iter_mut()
-                .for_each(|most| *most = most.map(|x| 2.0 * x));
+            // What is free and what forces have made ring may add up, and the latter is made anew.
+            let pairs = blocks.iter().zip(&mut rings);
+            for (_, rings) in pairs.filter(|(block, _)| turning(block)) {
+                rings[0].most = rings[0].most.map(|x| 2.0 * x);
+                rings[0].decay = 0.0;
+            }
         }
-        Self {
-            rings,
-            decays: passed.forced.is_empty(),
+        for wave in &values.load {
+            for &r in &wave.resonant {
+                let (block, ringing) = (&blocks[r], &mut rings[r][2]);
+                let parts = [wave.input[r].map(|x| x.re), wave.input[r].map(|x| x.im)];
+                let turns = wave.harmonic * values.base;
+                ringing.turns = ringing.turns.max(block.rate()).max(turns);
+                for bound in parts.map(|input| block.bound(input, whole)) {
+                    for (most, bound) in ringing.most.iter_mut().zip(bound) {
+                        *most += whole * bound;
+                    }
+                }
+            }
         }
+        Self { rings }
     }
 
-    /// Of two states.
-    pub(super) fn rings(&self, block: usize) -> Pair {
-        self.rings[block]
+    /// Of a pair.
+    pub(super) fn rings(&self, block: usize) -> &[Ringing; 3] {
+        &self.rings[block]
     }
+}
 
-    /// How what rings in a block decays.
-    pub(super) fn decay(&self, block: &Block) -> f64 {
-        if self.decays { block.slowest() } else { 0.0 }
-    }
+/// What a pair does within a time from these states, if nothing acts on it.
+fn free(block: &Block, states: Pair, time: f64) -> [Ringing; 3] {
+    let none = Ringing::default();
+    let Some(exponents) = block.real_exponents() else {
+        let ringing = Ringing {
+            turns: block.rate(),
+            decay: block.slowest(),
+            most: block.bound(states, time),
+        };
+        return [ringing, none, none];
+    };
+    let parts = block.real_parts(states);
+    let [slow, fast] = [0, 1].map(|part| {
+        let exponent: f64 = exponents[part];
+        let growth = (exponent * time).exp().max(1.0);
+        Ringing {
+            turns: exponent.abs(),
+            decay: exponent.min(0.0),
+            most: parts[part].map(|x| growth * x.abs()),
+        }
+    });
+    [slow, fast, none]
 }
 
 /// What a mode does to a signal.

@@ -23,6 +23,7 @@ use super::search::{Cubic, Largest, Way, extreme};
 use super::signal::{Look, Of, Signal, Term};
 use super::sums::integrals_of;
 use crate::contact_equation::equations::pass_results::{Extremes, GapExtreme};
+use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::skeleton::placement::Told;
 use crate::numeric::roots::Place;
 
@@ -34,6 +35,8 @@ const FEWEST: f64 = 6.0;
 const MOST: f64 = 1e6;
 /// What makes up less than this part of the rates of a gap is not followed by samples alone.
 const PART: f64 = 0.1;
+/// Of so many modes all are followed by samples.
+const FEW: usize = 1;
 /// Two extremes of a gap as near as this are one.
 const SEEN_TWICE: f64 = 1e-6;
 /// The rate of a gap is looked at between samples where it may come as near to zero, in parts of the larger one of both, so often at most.
@@ -242,6 +245,14 @@ impl Sampled {
     /// Periods in a unit of phase of what rings in gaps.
     fn rings(&self, motion: &Motion<'_>) -> f64 {
         let values = &motion.equations.values;
+        let blocks = &motion.values(self.interval).linear.blocks;
+        if blocks.len() <= FEW {
+            let turning = blocks
+                .iter()
+                .filter(|block| block.real_exponents().is_none());
+            let turns = turning.map(Block::rate).fold(0.0, f64::max);
+            return turns / values.base / std::f64::consts::TAU;
+        }
         let contacts = values.contacts.iter().enumerate();
         let contacts = contacts.filter(|(_, contact)| !contact.levels.is_empty());
         let turns = contacts.map(|(contact, _)| {

@@ -30,8 +30,9 @@ use crate::numeric::roots::Place;
 
 /// Accuracy of the phase of an extreme, in parts of the distance of two samples.
 const LOCATED: f64 = 1e-9;
-/// Steps to an extreme; more than any takes.
-const STEPS: usize = 60;
+/// Steps to an extreme, more than any takes; and after how many what it is in must be half as wide.
+const STEPS: usize = 120;
+const AGAIN: usize = 4;
 /// A cubic may be wrong by this part of the range of a coordinate where forces are known at nodes.
 const FORETOLD: f64 = 0.02;
 /// Parts of what is largest that are rounding.
@@ -141,17 +142,25 @@ pub(super) fn extreme(signal: &mut Signal<'_, '_>, ends: [Look; 2], base: f64) -
     } else {
         high
     };
-    for _ in 0..STEPS {
+    let mut known = f64::INFINITY;
+    for place in 0..STEPS {
         if here.rate == 0.0 {
             return here;
         }
         let inside = |x: f64| x > low.x && x < high.x;
         let beside = last.and_then(|last| beyond(&last, &here, base));
         let wide = high.x - low.x;
-        let next = match beside.filter(|x| inside(*x)) {
+        let middle = low.x + 0.5 * wide;
+        let mut next = match beside.filter(|x| inside(*x)) {
             Some(x) => x,
             None => low.x + Cubic::of(&low, &high, base).turn() * wide,
         };
+        let near_by = (next - here.x).abs() <= near;
+        // Cubics that do not close in give way to halving.
+        let slow = place % AGAIN == AGAIN - 1 && wide > 0.5 * std::mem::replace(&mut known, wide);
+        if !near_by && (slow || !inside(next)) {
+            next = middle;
+        }
         let step = next - here.x;
         if step.abs() <= near || !inside(next) {
             // So near the rate is a straight line.

@@ -148,7 +148,7 @@ impl<'m, 'e> Signal<'m, 'e> {
 
     /// Puts a row on what the motion is made of.
     fn put(&mut self, content: &Content, row: &[Seen]) {
-        self.ripples = Ripples::with_room(row.len());
+        self.ripples = Ripples::with_room(2 * row.len());
         self.rings.reserve(row.len());
         let (motion, interval) = (self.motion, self.interval);
         let values = motion.values(interval);
@@ -179,11 +179,7 @@ impl<'m, 'e> Signal<'m, 'e> {
             if ring.value != [0.0; 2] || ring.rate != [0.0; 2] {
                 self.rings.push(ring);
             }
-            let most = content.rings(seen.block);
-            let of = |row: Pair| row[0].abs() * most[0] + row[1].abs() * most[1];
-            self.size += of(seen.position);
-            let most = [of(seen.position), of(seen.rate)];
-            self.ripples.add(block.rate(), content.decay(block), most);
+            self.add_rings(content, seen, 0.0);
         }
         self.ripples.sort();
         let order = 2 * values.linear.blocks.len();
@@ -194,9 +190,19 @@ impl<'m, 'e> Signal<'m, 'e> {
         }
     }
 
+    /// What a pair does to it, in a row that turns.
+    fn add_rings(&mut self, content: &Content, seen: &Seen, turning: f64) {
+        for ringing in content.rings(seen.block) {
+            let of = |row: Pair| row[0].abs() * ringing.most[0] + row[1].abs() * ringing.most[1];
+            let most = [of(seen.position), of(seen.rate)];
+            self.size += most[0];
+            self.ripples
+                .add(ringing.turns + turning, ringing.decay, most);
+        }
+    }
+
     /// A gap that moves: bounds are those of the largest row that it may have.
     fn set_moving(&mut self, content: &Content, contact: usize) {
-        let values = self.motion.values(self.interval);
         let own = &self.motion.equations.values;
         self.whole = Some(Whole::Gap(contact));
         let row = own.contacts[contact].largest(own.base);
@@ -206,13 +212,7 @@ impl<'m, 'e> Signal<'m, 'e> {
         };
         let turning = own.contacts[contact].harmonic() * own.base;
         for seen in &row {
-            let most = content.rings(seen.block);
-            let of = |row: Pair| row[0] * most[0] + row[1] * most[1];
-            let block = &values.linear.blocks[seen.block];
-            let most = [of(seen.position), of(seen.rate)];
-            self.ripples
-                .add(block.rate() + turning, content.decay(block), most);
-            self.size += of(seen.position);
+            self.add_rings(content, seen, turning);
         }
         self.ripples.sort();
     }
@@ -305,7 +305,8 @@ impl<'m, 'e> Signal<'m, 'e> {
             return None;
         }
         let values = self.motion.values(self.interval);
-        let [from, _] = self.phases();
+        let [from, to] = self.phases();
+        let time = (to - from) / values.base;
         let zero = Complex::new(0.0, 0.0);
         let mut found = vec![Exponential {
             z: self.offset.into(),
@@ -319,7 +320,7 @@ impl<'m, 'e> Signal<'m, 'e> {
         }
         for ring in &self.rings {
             let block = &values.linear.blocks[ring.block];
-            for [z, m] in block.exponentials(ring.value)? {
+            for [z, m] in block.exponentials(ring.value, time)? {
                 found.push(Exponential { z, m });
             }
         }

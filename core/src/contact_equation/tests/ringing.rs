@@ -142,3 +142,34 @@ fn outputs_in_closed_form_are_those_of_samples() {
     assert!((found.mean.unwrap() - sums[0]).abs() < 1e-8 * rms);
     assert!((found.rms.unwrap() - rms).abs() < 1e-8 * rms);
 }
+
+crate::oscillator! {
+    /// A mode beside one that does not turn: it is damped so much that one exponent is near zero and the other far from it.
+    Heavy(x, y) {
+        param damping;
+        law stop(g) { g > 0 => 10*g^1.5, else => 0 }
+        ddot(x) + 0.05*dot(x) + x + 0.3*(x - y) + stop(x - 0.5) = 0.2*cos(omega*t);
+        ddot(y) + damping*dot(y) + y - 0.3*(x - y) = 0;
+    }
+}
+
+#[test]
+fn what_decays_at_once_costs_no_samples() {
+    let omega = 1.1;
+    for damping in [2.0, 20.0, 1e3, 1e6] {
+        let system = Heavy { damping };
+        let (mut equations, u) = first(&system, None, omega, [16, 1]);
+        equations.compute(&u, false);
+        let motion = Motion::of(&equations);
+        motion.extremes();
+        let samples: usize = motion.sampled().iter().map(Sampled::count).sum();
+        assert!(samples < 400, "{damping}: {samples}");
+    }
+    let system = Heavy { damping: 1e3 };
+    let point = orbit(&system, omega);
+    let state = &point.orbit.states[..4];
+    let dense = sampled(&system, state, 0.0, omega, |state| state[0]);
+    let found = &point.observed.motions[0];
+    assert!((found.minimum - dense[0]).abs() < 1e-7);
+    assert!((found.maximum - dense[1]).abs() < 1e-7);
+}

@@ -67,7 +67,7 @@ pub(crate) struct PairLinks {
     pub(super) links: Vec<PairLink>,
     /// `Q`, row by row.
     pub(super) direct: Vec<f64>,
-    /// In the order of links once [`PairLinks::sort`] was called.
+    /// In the order of links once an arrow has taken them.
     pub(super) reads: Vec<Read>,
     /// `P`, read by read.
     pub(super) factors: Vec<f64>,
