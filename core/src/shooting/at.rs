@@ -1,7 +1,7 @@
 //! Every orbit of a branch at a value of what it varies.
 //!
 //! Where the branch turns has been located, so that it passes a value at most once between two neighbours of its orbits and turns. There
-//! the orbit is searched along the chord of the two.
+//! the orbit is searched along the chord of the two, or by the other ways of [`value`](crate::branches::value).
 
 use super::compute;
 use super::problem::ShootingProblem;

@@ -13,7 +13,7 @@
 //! 1. A step is [divided](inside) where a function passes zero twice in it, as far as three points tell, two pairs of multipliers
 //!    [meet](meeting), or an extreme of a gap passes a [narrow] place of its law.
 //! 2. What changes its sign in a part is [located](zero) and read.
-//! 3. A step that [leaps](leap) over two folds is made again, shorter.
+//! 3. A step that [leaps](leap) over two folds, or to another limb, is made again, shorter.
 //! 4. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
 //! 5. What events that were located [hide](counted) is looked for beside them.
 //! 6. A step onto a branch of more regular orbits is made again up to shortly before the [joint] of both.
