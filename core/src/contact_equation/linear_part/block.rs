@@ -12,7 +12,17 @@
 //! r(s) = int_0^s k(u) e^(i w (s - u)) du,    p(s) = int_0^s c(u) e^(i w (s - u)) du = k + (i w - m) r         (2)
 //! ```
 //!
-//! Source: Higham (2008), Functions of Matrices, section 1.2 (equation 1.10, interpolation of Hermite).
+//! Exponents that are real and differ are taken apart. The far one `f = m -+ sqrt(d)` is a sum of equal signs, the near one is
+//! `det A / f`, so that neither cancels, and with them
+//!
+//! ```text
+//! r(s) = (phi(f) - phi(n)) / (f - n),    phi(e) = int_0^s e^(e u) e^(i w (s - u)) du = s e^(i w s) E((e - i w) s)       (3)
+//! ```
+//!
+//! with `E(z) = (e^z - 1) / z`.
+//!
+//! Sources: Higham (2008), Functions of Matrices, section 1.2 (equation 1.10, interpolation of Hermite) and equation (10.51) for `E`;
+//! Higham (2002), Accuracy and Stability of Numerical Algorithms, section 1.8 for the roots.
 
 use multiversion::multiversion;
 use nalgebra::Complex;
@@ -47,6 +57,10 @@ pub(in crate::contact_equation) struct Block {
     square: f64,
     /// `sqrt(|d|)`
     root: f64,
+    /// `det A`
+    determinant: f64,
+    /// Both exponents, the larger one first, where they are real.
+    exponents: Pair,
 }
 
 /// `c` and `k` of (1).
@@ -94,12 +108,18 @@ impl Block {
         deviation[0][0] -= mean;
         deviation[1][1] -= mean;
         let square = deviation[0][0] * deviation[0][0] + deviation[0][1] * deviation[1][0];
+        let root = square.abs().sqrt();
+        let determinant = matrix[0][0] * matrix[1][1] - matrix[0][1] * matrix[1][0];
+        let far = mean + root.copysign(mean);
+        let near = if far == 0.0 { 0.0 } else { determinant / far };
         Self {
             matrix,
             mean,
             deviation,
             square,
-            root: square.abs().sqrt(),
+            root,
+            determinant,
+            exponents: [far.max(near), far.min(near)],
         }
     }
 
@@ -136,7 +156,7 @@ impl Block {
     /// Both exponents, the larger one first, where they are real and differ.
     pub(in crate::contact_equation) fn real_exponents(&self) -> Option<[f64; 2]> {
         let differ = self.square > 0.0 && self.root > APART * self.mean.abs();
-        differ.then_some([self.mean + self.root, self.mean - self.root])
+        differ.then_some(self.exponents)
     }
 
     /// What states have of each of these, `(x +- D x / sqrt(d)) / 2`.
@@ -147,18 +167,25 @@ impl Block {
 
     /// The exponent of what decays most slowly; zero where it grows.
     pub(in crate::contact_equation) fn slowest(&self) -> f64 {
-        (self.mean + self.square.max(0.0).sqrt()).min(0.0)
+        let slowest = if self.square > 0.0 {
+            self.exponents[0]
+        } else {
+            self.mean
+        };
+        slowest.min(0.0)
     }
 
     /// `-A^-1` of a constant load; nothing where an exponent is zero.
     pub(in crate::contact_equation) fn held(&self, load: Pair) -> Pair {
-        let determinant = self.mean * self.mean - self.square;
+        let determinant = self.determinant;
         if determinant.abs() <= f64::EPSILON * self.rate().powi(2) || determinant == 0.0 {
             return [0.0; 2];
         }
-        // A^-1 = (m - D) / (m^2 - d)
-        let turned = times(self.deviation, load);
-        [0, 1].map(|i| (turned[i] - self.mean * load[i]) / determinant)
+        let [[a, b], [c, d]] = self.matrix;
+        [
+            (b * load[1] - d * load[0]) / determinant,
+            (c * load[0] - a * load[1]) / determinant,
+        ]
     }
 
     /// The faster of what decays, whether it oscillates or not.
@@ -168,7 +195,7 @@ impl Block {
 
     /// Squares of the sizes of both exponents, without those that are zero.
     pub(in crate::contact_equation) fn squares(&self) -> impl Iterator<Item = f64> {
-        let product = (self.mean * self.mean - self.square).abs();
+        let product = self.determinant.abs();
         let larger = if self.square > 0.0 {
             self.rate() * self.rate()
         } else {
@@ -190,14 +217,10 @@ impl Block {
             series(x, s)
         } else if x > 0.0 {
             // Both exponents at once, so that no factor overflows where they decay.
-            let root = self.root;
-            let (plus, minus) = (
-                ((self.mean + root) * s).exp(),
-                ((self.mean - root) * s).exp(),
-            );
+            let [plus, minus] = self.exponents.map(|exponent| (exponent * s).exp());
             return Kernel {
                 c: 0.5 * (plus + minus),
-                k: 0.5 * (plus - minus) / root,
+                k: 0.5 * (plus - minus) / self.root,
             };
         } else {
             let root = self.root;
@@ -273,22 +296,36 @@ impl Block {
         frequency: f64,
         input: [Complex<f64>; 2],
     ) -> Option<[[Complex<f64>; 2]; 2]> {
-        let z = Complex::new(0.0, frequency) - self.mean;
-        let determinant = z * z - self.square;
-        let size = frequency * frequency + self.rate().powi(2);
-        if determinant.norm() <= NEAR * size || size == 0.0 {
+        if self.is_resonant(frequency) {
             return None;
         }
-        let d = self.deviation;
+        let [[a, b], [c, d]] = self.matrix;
+        let wave = Complex::new(0.0, frequency);
+        // (i w)^2 - i w tr A + det A
+        let determinant = Complex::new(
+            self.determinant - frequency * frequency,
+            -frequency * (a + d),
+        );
         let inverse = |x: [Complex<f64>; 2]| {
             [
-                (z * x[0] + x[0] * d[0][0] + x[1] * d[0][1]) / determinant,
-                (z * x[1] + x[0] * d[1][0] + x[1] * d[1][1]) / determinant,
+                ((wave - d) * x[0] + x[1] * b) / determinant,
+                (x[0] * c + (wave - a) * x[1]) / determinant,
             ]
         };
         let response = inverse(input);
         let by = inverse(response).map(|x| x * Complex::new(0.0, -1.0));
         Some([response, by])
+    }
+
+    /// Whether an exponent is so near to that of a wave that the steady response cancels in what there is.
+    fn is_resonant(&self, frequency: f64) -> bool {
+        if self.square > 0.0 {
+            // Real exponents are near to no wave but a constant.
+            let [larger, smaller] = self.exponents.map(f64::abs);
+            return frequency == 0.0 && larger.min(smaller) <= NEAR * larger.max(smaller);
+        }
+        let apart = (frequency.abs() - self.root).hypot(self.mean);
+        apart <= NEAR * (frequency.abs() + self.root + self.mean.abs())
     }
 
     /// (2) and its derivatives by the frequency: `p`, `r`, `dp`, `dr`.
@@ -304,12 +341,25 @@ impl Block {
                 slope(square * s / 3.0),
             ];
         }
+        if let Some(exponents) = self.real_exponents() {
+            return by_exponents(exponents, frequency, s);
+        }
+        let wave = Complex::new(0.0, frequency);
+        let [r, by] = self.by_rule(frequency, s);
+        let k = self.kernel(s).k;
+        let p = k + (wave - self.mean) * r;
+        let p_by = (wave - self.mean) * by + r * Complex::new(0.0, 1.0);
+        [p, r, p_by, by]
+    }
+
+    /// `r` of (2) and its derivative, by rules of Gauss.
+    fn by_rule(&self, frequency: f64, s: f64) -> [Complex<f64>; 2] {
         let wave = Complex::new(0.0, frequency);
         let turn = (self.rate() + frequency) * s.abs();
         let rules = (turn / TURN).ceil().max(1.0);
         // Unknowns that belong to no motion: there the pass fails.
         if rules > MOST {
-            return [Complex::new(f64::NAN, f64::NAN); 4];
+            return [Complex::new(f64::NAN, f64::NAN); 2];
         }
         let rule = gauss::rule(POINTS);
         let mut r = Complex::new(0.0, 0.0);
@@ -323,12 +373,46 @@ impl Block {
                 by += value * Complex::new(0.0, s - u);
             }
         }
-        let k = self.kernel(s).k;
-        let p = k + (wave - self.mean) * r;
-        let p_by = (wave - self.mean) * by + r * Complex::new(0.0, 1.0);
-        [p, r, p_by, by]
+        [r, by]
     }
 }
+
+/// (2) by (3) and its derivatives by the frequency: `p`, `r`, `dp`, `dr`.
+fn by_exponents(exponents: Pair, frequency: f64, s: f64) -> [Complex<f64>; 4] {
+    let wave = Complex::new(0.0, frequency);
+    let turn = (wave * s).exp();
+    let [larger, smaller] = exponents.map(|exponent| {
+        let z = (exponent - wave) * s;
+        let (value, slope) = quotient(z);
+        let by = Complex::new(0.0, s * s);
+        [turn * value * s, turn * (value - slope) * by]
+    });
+    let apart = exponents[0] - exponents[1];
+    let sum = |i: usize| 0.5 * (larger[i] + smaller[i]);
+    let difference = |i: usize| (larger[i] - smaller[i]) / apart;
+    [sum(0), difference(0), sum(1), difference(1)]
+}
+
+/// `E` of (3) and its derivative.
+fn quotient(z: Complex<f64>) -> (Complex<f64>, Complex<f64>) {
+    if z.norm() > 1.0 {
+        let value = (z.exp() - 1.0) / z;
+        return (value, (z.exp() - value) / z);
+    }
+    // E = sum z^n / (n + 1)!, E' = sum (n + 1) z^n / (n + 2)!
+    let zero = Complex::new(0.0, 0.0);
+    let (mut value, mut slope, mut term) = (zero, zero, Complex::new(1.0, 0.0));
+    for n in 0..TERMS {
+        let n = n as f64;
+        value += term / (n + 1.0);
+        slope += term / (n + 2.0);
+        term *= z / (n + 1.0);
+    }
+    (value, slope)
+}
+
+/// Terms of the series of `E` for arguments up to one.
+const TERMS: usize = 18;
 
 /// Exponents as near as this to a frequency, relative to both, are in resonance.
 const NEAR: f64 = 1e-5;
@@ -403,6 +487,43 @@ mod tests {
             let [p0, r0, ..] = block.response_at_rest(frequency - h, s);
             assert!(((p1 - p0) / (2.0 * h) - p_by).norm() < 1e-8);
             assert!(((r1 - r0) / (2.0 * h) - r_by).norm() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn responses_of_far_exponents_are_those_of_each() {
+        // x'' + c x' + k x = e^(i w t) with c^2 far above k: exponents -c and -k / c to first order.
+        for (c, k) in [(20.0, 1.0), (1e3, 0.3), (1e6, 1.0), (1e9, 1e-3), (1e3, 0.0)] {
+            let block = Block::new([[0.0, 1.0], [-k, -c]]);
+            let [near, far] = block.real_exponents().unwrap();
+            assert!((near * near + c * near + k).abs() <= 1e-14 * k.max(f64::MIN_POSITIVE));
+            assert!((near + far + c).abs() <= 1e-15 * c);
+            let input = [Complex::new(0.0, 0.0), Complex::new(1.0, 0.0)];
+            for frequency in [1e-3, 1.3, 40.0] {
+                let [steady, _] = block.steady(frequency, input).unwrap();
+                let exact = 1.0 / Complex::new(k - frequency * frequency, c * frequency);
+                assert!((steady[0] - exact).norm() <= 1e-14 * exact.norm());
+                let s = 2.1;
+                let [p, r, ..] = block.response_at_rest(frequency, s);
+                let d = block.deviation;
+                let found = r * d[0][1] + p * input[0];
+                let decays = [near, far].map(|e| {
+                    let turn = Complex::new(0.0, frequency * s).exp();
+                    (turn - (e * s).exp()) / Complex::new(-e, frequency)
+                });
+                let expected = (decays[0] - decays[1]) / (near - far);
+                assert!(
+                    (found - expected).norm() <= 1e-10 * expected.norm(),
+                    "{c} {k} {frequency}: {found} {expected}"
+                );
+            }
+            // Under a constant load the slow one is all there is, from 0 on: s / c but for what k takes.
+            let [_, r, ..] = block.response_at_rest(0.0, 2.0);
+            let exact = 2.0 / c * (1.0 - k / c) - 1.0 / (c * c);
+            assert!(
+                (r.re - exact).abs() <= 2.0 * (k * k + 1.0) / c.powi(3) + 1e-15 * exact,
+                "{c} {k}"
+            );
         }
     }
 
