@@ -207,6 +207,9 @@ fn ended(
     Ok(Followed { branch, rest })
 }
 
+/// Kinks of a first orbit are located so often at most: the guess has others.
+const RELOCATED: usize = 3;
+
 /// A run whose equations fit a first orbit, and its unknowns.
 fn begun<'p>(
     problem: &'p ContactProblem,
@@ -244,7 +247,8 @@ fn fitting(problem: &ContactProblem, first: First) -> Option<(Run<'_>, Vec<f64>)
         if run.equations.failed {
             return None;
         }
-        if run.fits(&u) != Fits::No {
+        let is_at_kinks = tried >= RELOCATED || !run.has_moved_kinks(&u);
+        if run.fits(&u) != Fits::No && is_at_kinks {
             // Another orbit may come back earlier than the one that was looked for.
             let other = tried > 0 && problem.earlier(&run.equations, problem.same()).is_some();
             return (!other).then_some((run, u));

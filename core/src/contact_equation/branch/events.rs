@@ -133,18 +133,18 @@ fn along(at: &CurvePoint, step: Step<'_>) -> CurvePoint {
 type Locate = fn(&mut Equations, &CurvePoint, Test) -> Option<(CurvePoint, f64, f64)>;
 
 /// Where a test function vanishes with more nodes, and more again until that does not change.
-fn located_again(run: &Run<'_>, at: &CurvePoint, test: Test, locate: Locate) -> Option<Again> {
+fn located_again(run: &mut Run<'_>, at: &CurvePoint, test: Test, locate: Locate) -> Option<Again> {
     let mut found: Option<Again> = None;
     for _ in 0..FINER {
-        let (from, point) = match &found {
-            Some(again) => (&again.equations, &again.point),
-            None => (&run.equations, at),
+        let (from, point) = match &mut found {
+            Some(again) => (&mut again.equations, &again.point),
+            None => (&mut run.equations, at),
         };
         let value = point.parameter();
-        let Some(mut next) = from.finer_equations(value) else {
+        let Some(mut next) = from.finer_at(&point.u) else {
             break;
         };
-        let there = |u: &[f64]| from.skeleton.interpolated(&next.skeleton, u);
+        let there = |u: &[f64]| from.finer_unknowns(&next, &point.u, u);
         let start = CurvePoint {
             u: there(&point.u),
             tangent: there(&point.tangent),
@@ -399,7 +399,7 @@ fn keep_touch(run: &mut Run<'_>, touch: &Touch, at: &CurvePoint) {
         }
     }
     let square = run.watched(&u, &touch.extreme);
-    let finer = square.and_then(|(square, _)| with_more_nodes(&run.equations, u, square));
+    let finer = square.and_then(|(square, _)| with_more_nodes(&mut run.equations, u, square));
     if let Some(former) = former {
         run.equations = former;
     }
@@ -440,14 +440,17 @@ struct Touching {
 }
 
 /// An orbit of these equations, whose `H` of a pair is at this place, where that is zero: with more nodes until its value is known.
-fn with_more_nodes(equations: &Equations, mut u: Vec<f64>, square: usize) -> Option<Touching> {
+fn with_more_nodes(equations: &mut Equations, mut u: Vec<f64>, square: usize) -> Option<Touching> {
     let mut finer: Option<(Equations, f64)> = None;
     for _ in 0..FINER {
-        let from = finer.as_ref().map_or(equations, |(finer, _)| finer);
-        let Some(mut next) = from.finer_equations(u[u.len() - 1]) else {
+        let from = match &mut finer {
+            Some((finer, _)) => finer,
+            None => &mut *equations,
+        };
+        let Some(mut next) = from.finer_at(&u) else {
             break;
         };
-        let mut there = from.skeleton.interpolated(&next.skeleton, &u);
+        let mut there = from.finer_unknowns(&next, &u, &u);
         there[square] = 0.0;
         let mut newton = Newton::new(&next);
         if solve::with_held(&mut next, &mut newton, &mut there, square, OPTIONS).is_err() {

@@ -251,6 +251,12 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         };
         let coarse = wanted > self.run.resolution;
         let again = !stuck && self.refused < REFUSALS;
+        // As many nodes may do where panels end at the kinks of this orbit.
+        let wanted = if coarse && read.overlooks.is_none() && self.run.has_moved_kinks(&at.u) {
+            self.run.resolution
+        } else {
+            wanted
+        };
         if coarse && again && self.prepare(&at.u, wanted) {
             self.refused += 1;
             return Read::Refused;

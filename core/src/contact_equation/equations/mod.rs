@@ -171,8 +171,13 @@ impl Equations {
 
     /// The same with more nodes.
     pub(super) fn finer_equations(&self, value: f64) -> Option<Self> {
+        self.on(self.skeleton.finer(), value)
+    }
+
+    /// The same on another skeleton.
+    pub(super) fn on(&self, skeleton: Skeleton, value: f64) -> Option<Self> {
         let (setting, reference) = (self.setting.clone(), self.reference.clone());
-        Self::new(setting, value, self.skeleton.finer(), reference, self.size)
+        Self::new(setting, value, skeleton, reference, self.size)
     }
 
     fn resize(&mut self) {

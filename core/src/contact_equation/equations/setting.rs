@@ -8,6 +8,7 @@ use crate::contact_equation::linear_part::moving_stiffness::as_contacts;
 use crate::contact_equation::linear_part::values::Values;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::placement::Resolution;
+use crate::laws::generic::scales::Scales;
 use crate::model::layout::Layout;
 use crate::system::{System, Variable};
 
@@ -23,6 +24,8 @@ pub(in crate::contact_equation) struct Setting {
     pub(in crate::contact_equation) cancel: Cancel,
     /// Nothing but the time depends on the frequency that is varied.
     pub(in crate::contact_equation) plain: bool,
+    /// Operands of the laws that have pieces with kinks.
+    kinked: Arc<[Option<Scales>]>,
 }
 
 impl Setting {
@@ -37,7 +40,13 @@ impl Setting {
         let system = as_contacts(system, &mut layout);
         let mut by = vec![0.0; layout.coefficients];
         system.coefficients_by(Variable::Omega, &parameters, omega, &mut by);
+        let kinked = (0..system.facts().laws).map(|law| {
+            let law = system.law(law);
+            let pieces = law.facts().pieces.len();
+            Scales::of(law).filter(|scales| (0..pieces).any(|piece| scales.bends(piece)))
+        });
         Self {
+            kinked: kinked.collect(),
             system,
             layout: Arc::new(layout),
             variable,
@@ -46,6 +55,17 @@ impl Setting {
             omega,
             cancel: cancel.clone(),
         }
+    }
+
+    /// Whether forces have kinks on pieces.
+    pub(in crate::contact_equation) fn has_kinks(&self) -> bool {
+        self.kinked.iter().any(Option::is_some)
+    }
+
+    /// The operands of a law whose force has kinks on a piece.
+    pub(in crate::contact_equation) fn kinked(&self, law: usize, piece: usize) -> Option<Scales> {
+        let scales = self.kinked.get(law)?.as_ref();
+        scales.filter(|scales| scales.bends(piece)).cloned()
     }
 
     /// Parameters and frequency where what is varied has a value.

@@ -1,10 +1,11 @@
 //! The motion of an orbit at any phase ([`motion`]), and extremes of its coordinates and gaps by that ([`extremes`]). Of a motion that is given
-//! otherwise, as by a series, the gaps are seen from samples ([`gaps`]).
+//! otherwise, as by a series, the gaps are seen from samples ([`gaps`]). Panels end where slopes of forces jump ([`kinks`]).
 
 mod content;
 pub(super) mod extremes;
 mod forced;
 pub(super) mod gaps;
+pub(super) mod kinks;
 pub(super) mod motion;
 mod search;
 pub(super) mod signal;

@@ -57,7 +57,7 @@ impl Run<'_> {
     ) -> Option<Steepness> {
         let accuracy = self.accuracy();
         let extremes = self.equations.extremes.get()?.coordinates.clone();
-        let slope = at.parameter_slope();
+        let slope = at.tangent[at.tangent.len() - 1];
         let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
         let moved = at.u.iter().zip(&at.tangent);
         let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();

@@ -226,7 +226,8 @@ impl Run<'_> {
     /// Reads an orbit of the walk. Near one whose errors a finer solution has shown it has those, as many times as large as what its forces
     /// leave out tells. Where that is more than is asked for, and every so often, a finer solution is asked again.
     pub(super) fn read_on(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
-        if matches!(self.accuracy(), Accuracy::Output(_)) {
+        // What a kink beside the end of a panel does to an orbit, the last coefficients of its forces do not tell.
+        if matches!(self.accuracy(), Accuracy::Output(_)) || self.equations.setting.has_kinks() {
             return self.read(at);
         }
         let slope = at.parameter_slope().abs();
@@ -381,15 +382,13 @@ impl Run<'_> {
 
     /// The orbit with more nodes, by one step of Newton's method in the plane across the tangent, as in (1).
     fn corrected(&mut self, at: &CurvePoint) -> Option<Finer> {
-        if self.finer.is_none() {
-            self.finer = self.equations.finer_equations(at.parameter());
+        // Kinks are elsewhere on every orbit.
+        if self.finer.is_none() || self.equations.setting.has_kinks() {
+            self.finer = self.equations.finer_at(&at.u);
         }
         let finer = self.finer.as_mut()?;
-        let mut u = self.equations.skeleton.interpolated(&finer.skeleton, &at.u);
-        let tangent = self
-            .equations
-            .skeleton
-            .interpolated(&finer.skeleton, &at.tangent);
+        let mut u = self.equations.finer_unknowns(finer, &at.u, &at.u);
+        let tangent = self.equations.finer_unknowns(finer, &at.u, &at.tangent);
         let step = finer.across(&u, &tangent)?;
         for (x, by) in u.iter_mut().zip(&step) {
             *x -= by;

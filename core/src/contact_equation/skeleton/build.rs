@@ -1,5 +1,5 @@
-//! A skeleton from the switches of an orbit: intervals from cut to cut, panels of long ones, and the grading of nodes by the exponents that
-//! the force has at a switch.
+//! A skeleton from the switches of an orbit: intervals from cut to cut, panels of long ones and from kink to kink, and the grading of nodes
+//! by the exponents that the force has at a switch.
 
 use std::f64::consts::TAU;
 
@@ -24,7 +24,10 @@ impl Skeleton {
     ) -> Self {
         let contacts = &values.contacts;
         let Placement {
-            beginning, placed, ..
+            beginning,
+            placed,
+            kinks,
+            ..
         } = placement.clone();
         let mut skeleton = Self {
             begin: beginning.phase,
@@ -39,6 +42,7 @@ impl Skeleton {
             configurations: Vec::new(),
             forces: 0,
             placement,
+            refined: 0,
         };
         let end = beginning.phase + beginning.length();
         let mut pieces = beginning.pieces;
@@ -49,11 +53,14 @@ impl Skeleton {
             .map(|(index, placed)| (Some(index), placed.phase));
         for (ends, next) in ends.chain([(None, end)]) {
             let to = ends.map_or(Cut::End, Cut::Switch);
+            let after = ends.unwrap_or(placed.len());
+            let own = kinks.iter().filter(|kink| kink.after == after);
             let way = Way {
                 cuts: [from, to],
                 length: next - phase,
                 pieces: &pieces,
                 ends,
+                kinks: own.map(|kink| kink.part).collect(),
             };
             skeleton.add(system, values, &way);
             if let Some(index) = ends {
@@ -74,19 +81,12 @@ impl Skeleton {
     fn add(&mut self, system: &dyn System, values: &Values, way: &Way<'_>) {
         let contacts = &values.contacts;
         let (active, configuration) = self.forced(system, values, way.pieces);
-        let panels = if active.is_empty() {
-            1
+        let borders = if active.is_empty() {
+            vec![0.0, 1.0]
         } else {
-            let whole = self.length.min(TAU);
-            let asked = self.placement.resolution.panels as f64 * way.length / whole;
-            let asked = asked.ceil().max(1.0) as usize;
-            // Half of a period then has the nodes of the other half: what is its image stays that, and where this symmetry breaks branches cross.
-            if way.cuts == [Cut::Begin, Cut::End] {
-                asked.next_multiple_of(2)
-            } else {
-                asked
-            }
+            self.borders(way)
         };
+        let panels = borders.len() - 1;
         let [first, last] = way.cuts.map(|cut| self.steepness(system, contacts, cut));
         let [from, to] = way.cuts;
         for panel in 0..panels {
@@ -96,7 +96,7 @@ impl Skeleton {
                 index => Mark {
                     from,
                     to,
-                    part: index as f64 / panels as f64,
+                    part: borders[index],
                 },
             };
             let grading = [
@@ -122,6 +122,39 @@ impl Skeleton {
                 ends: way.ends.filter(|_| panel + 1 == panels),
             });
         }
+    }
+
+    /// Where panels of a way begin and end, in parts of it.
+    fn borders(&self, way: &Way<'_>) -> Vec<f64> {
+        let whole = self.length.min(TAU);
+        let asked = self.placement.resolution.panels as f64 * way.length / whole;
+        // Half of a period then has the nodes of the other half: what is its image stays that, and where this symmetry breaks branches cross.
+        let is_whole = way.cuts == [Cut::Begin, Cut::End];
+        if way.kinks.is_empty() {
+            let panels = asked.ceil().max(1.0) as usize;
+            let panels = if is_whole {
+                panels.next_multiple_of(2)
+            } else {
+                panels
+            };
+            return (0..=panels)
+                .map(|index| index as f64 / panels as f64)
+                .collect();
+        }
+        let mut ends = way.kinks.clone();
+        ends.extend(is_whole.then_some(0.5));
+        ends.push(1.0);
+        ends.sort_by(f64::total_cmp);
+        let (mut borders, mut from) = (vec![0.0], 0.0);
+        for to in ends {
+            let panels = (asked * (to - from)).ceil().max(1.0) as usize;
+            let border = |index: usize| from + (to - from) * index as f64 / panels as f64;
+            borders.extend((1..panels).map(border));
+            borders.push(to);
+            from = to;
+        }
+        borders.dedup();
+        borders
     }
 
     /// Contacts whose forces are unknown where they are on these pieces, and the configuration that has the forces, if there is one.
@@ -190,6 +223,8 @@ struct Way<'w> {
     length: f64,
     pieces: &'w [usize],
     ends: Option<usize>,
+    /// Parts of it where the slope of a force jumps.
+    kinks: Vec<f64>,
 }
 
 /// Exponents of a force at one of its levels, from both sides, and whether each comes with a logarithm.

@@ -57,6 +57,8 @@ pub(super) struct Skeleton {
     /// Number of forces.
     pub(super) forces: usize,
     pub(super) placement: Placement,
+    /// How often it was made finer than that asks for.
+    refined: usize,
 }
 
 impl Skeleton {

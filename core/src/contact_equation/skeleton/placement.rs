@@ -51,6 +51,17 @@ pub(in crate::contact_equation) struct Placed {
     pub(in crate::contact_equation) phase: f64,
 }
 
+/// Where the slope of a force jumps between two cuts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::contact_equation) struct Kink {
+    /// Switches before it.
+    pub(in crate::contact_equation) after: usize,
+    /// Part of the way from the last of these, or the beginning, to the next one, or the end.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub(in crate::contact_equation) part: f64,
+}
+
 /// Nodes of a stretch and panels of a stretch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -82,12 +93,15 @@ pub(in crate::contact_equation) fn length(recurrence: &Recurrence) -> f64 {
     TAU * recurrence.period as f64 / recurrence.parts as f64
 }
 
-/// What a skeleton is made from: its beginning, and the switches in the order of time.
+/// What a skeleton is made from: its beginning, and switches and kinks in the order of time.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::contact_equation) struct Placement {
     pub(in crate::contact_equation) beginning: Beginning,
     pub(in crate::contact_equation) placed: Vec<Placed>,
+    /// Panels end there.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(in crate::contact_equation) kinks: Vec<Kink>,
     pub(in crate::contact_equation) resolution: Resolution,
 }
 
@@ -108,12 +122,17 @@ impl Placement {
         let end = phase + length;
         let within = |placed: &Placed| (*phase..=end).contains(&placed.phase);
         let told = |index: usize| self.is_told(index);
+        let places = self.kinks.iter().map(|kink| (kink.after, kink.part));
+        let between =
+            |kink: &Kink| kink.after <= self.placed.len() && kink.part > 0.0 && kink.part < 1.0;
         on_pieces
             && (0.0..=length).contains(phase)
             && self.placed.iter().all(has_level)
             && self.placed.iter().all(within)
             && self.placed.is_sorted_by(|a, b| a.phase <= b.phase)
             && (0..self.placed.len()).all(told)
+            && places.is_sorted_by(|a, b| a < b)
+            && self.kinks.iter().all(between)
     }
 
     /// Whether a switch is alone, or one of two that name each other: of the same gap at the same level, which rises at one of them.

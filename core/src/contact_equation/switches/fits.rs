@@ -8,6 +8,7 @@ use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::equations::{BACK, Equations};
 use crate::contact_equation::linear_part::configuration::Configuration;
 use crate::contact_equation::orbit::gaps::{Gaps, room};
+use crate::contact_equation::orbit::kinks::are_at;
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::run::Run;
 use crate::contact_equation::skeleton::placement::{Switch, Told};
@@ -79,7 +80,9 @@ impl Run<'_> {
         }
         let found = motion.extremes().gaps.concat();
         let mut fits = self.pairs_fit(u);
-        if self.is_watched_in_vain(u, &found) || !self.equations.is_sound() {
+        let others = self.equations.kinks_of_last(u);
+        let moved = !are_at(&self.equations.skeleton.placement.kinks, &others);
+        if moved || self.is_watched_in_vain(u, &found) || !self.equations.is_sound() {
             fits = Fits::Soon;
         }
         for extreme in &found {
@@ -90,6 +93,12 @@ impl Run<'_> {
             }
         }
         fits
+    }
+
+    /// Whether panels end elsewhere than at the kinks of an orbit.
+    pub(in crate::contact_equation) fn has_moved_kinks(&mut self, u: &[f64]) -> bool {
+        let kinks = self.equations.kinks(u);
+        kinks.is_some_and(|kinks| !are_at(&self.equations.skeleton.placement.kinks, &kinks))
     }
 
     /// Whether switches are told as they should be, and the beginning is away from them.

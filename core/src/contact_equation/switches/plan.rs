@@ -9,6 +9,7 @@ use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::equations::setting::{Frame, Setting};
 use crate::contact_equation::linear_part::values::Contact;
 use crate::contact_equation::orbit::gaps::{BEND, Gaps, beginning, piece, room, seen};
+use crate::contact_equation::orbit::kinks::kinks;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::placement::{
     Beginning, Placed, Placement, Switch, Told, length,
@@ -168,26 +169,36 @@ impl Plan {
         gaps: &Gaps<'_>,
         frame: &Frame,
     ) -> Option<(Equations, Vec<f64>)> {
-        let placed: Vec<Placed> = self.planned.iter().map(|planned| planned.placed).collect();
-        let skeleton = Skeleton::new(
-            setting.system.as_ref(),
-            gaps.values,
-            Placement {
-                beginning: self.beginning.clone(),
-                placed,
-                resolution: frame.resolution,
-            },
-        );
+        let placement = Placement {
+            beginning: self.beginning.clone(),
+            placed: self.planned.iter().map(|planned| planned.placed).collect(),
+            kinks: Vec::new(),
+            resolution: frame.resolution,
+        };
+        let new =
+            |placement: Placement| Skeleton::new(setting.system.as_ref(), gaps.values, placement);
+        let mut skeleton = new(placement);
         let reference = frame.reference.clone();
+        let told = self.told(&skeleton, gaps, &reference);
+        let kinks = kinks(setting, gaps, &skeleton, &told);
+        if !kinks.is_empty() {
+            skeleton = new(Placement {
+                kinks,
+                ..skeleton.placement
+            });
+        }
         let equations = Equations::new(setting.clone(), value, skeleton, reference, frame.size)?;
-        let u = self.unknowns(&equations, gaps, value);
+        let mut u = told;
+        u.resize(equations.skeleton.unknowns(), 0.0);
+        u.push(value);
+        write_forces(&equations, gaps, &mut u);
         Some((equations, u))
     }
 
-    fn unknowns(&self, equations: &Equations, gaps: &Gaps<'_>, value: f64) -> Vec<f64> {
-        let skeleton = &equations.skeleton;
+    /// Unknowns that are no forces.
+    fn told(&self, skeleton: &Skeleton, gaps: &Gaps<'_>, reference: &[f64]) -> Vec<f64> {
         let mut u = gaps.state(skeleton.begin);
-        for (x, origin) in u.iter_mut().zip(&equations.reference) {
+        for (x, origin) in u.iter_mut().zip(reference) {
             *x -= origin;
         }
         let told = self.planned.iter().enumerate();
@@ -197,9 +208,6 @@ impl Plan {
                 _ => planned.value,
             }),
         );
-        u.resize(skeleton.unknowns(), 0.0);
-        u.push(value);
-        write_forces(equations, gaps, &mut u);
         u
     }
 }

@@ -21,6 +21,15 @@ crate::oscillator! {
     }
 }
 
+crate::oscillator! {
+    /// A contact with damping that does not pull, and a damper in one direction: kinks in the rate.
+    Kinked(x) {
+        law stop(gap) { gap > 0 => max(0, 3*gap + 4*gap*dot(gap)), else => 0 }
+        law damper(gap) { 0.4*max(0, dot(gap)) }
+        ddot(x) + 0.1*dot(x) + x + stop(x - 0.3) + damper(x) = 0.8*cos(omega*t);
+    }
+}
+
 /// Parts of peak-to-peak that so many nodes leave out of it.
 const ALLOWED: [(usize, f64); 2] = [(24, 1e-9), (32, 1e-12)];
 
@@ -33,11 +42,12 @@ fn a_stretch_is_known_to_twelve_digits_by_32_nodes() {
             drive: 0.3,
         })
     };
-    let systems: [(&str, Box<dyn System>, f64); 4] = [
+    let systems: [(&str, Box<dyn System>, f64); 5] = [
         ("1", one(1.0), 0.7),
         ("3/2", one(1.5), 0.7),
         ("jump", Box::new(Pressed {}), 1.2),
         ("moving gap", Box::new(Moving {}), 0.9),
+        ("kinks in the rate", Box::new(Kinked {}), 0.9),
     ];
     let mut short = Vec::new();
     for (name, system, omega) in &systems {

@@ -1,0 +1,171 @@
+//! Where the slope of a force jumps although its gap stays on a piece, as that of `max(0, dot(gap))` does where the rate is zero.
+//!
+//! Polynomials through nodes on both sides of such a kink converge slowly, and neither the orbit nor its multipliers tell by how much. So
+//! panels end there. Since the force is continuous, an orbit depends on the place `p` of such an end as little as
+//!
+//! ```text
+//! x(p) - x(p_0) = O((p - p_0)^2)                                                                               (1)
+//! ```
+//!
+//! so that kinks need not be unknowns: they are located on an orbit that was found, by the sign of what the absolute value is taken of
+//! ([`scales`](crate::laws::generic::scales)), and stay in their part of the way between two switches until they have moved far. Finer
+//! equations, which tell the error, have them where the orbit has them. Two kinks between the same samples are not seen.
+//!
+//! Source: Gear and Østerby (1984), Solving ordinary differential equations with discontinuities, ACM Transactions on Mathematical Software
+//! 10, 23 (steps end where a derivative jumps).
+
+use std::f64::consts::TAU;
+
+use super::gaps::Gaps;
+use super::motion::Motion;
+use crate::contact_equation::equations::Equations;
+use crate::contact_equation::equations::setting::Setting;
+use crate::contact_equation::linear_part::values::Contact;
+use crate::contact_equation::skeleton::Skeleton;
+use crate::contact_equation::skeleton::interval::{Cut, Interval, Mark};
+use crate::contact_equation::skeleton::placement::Kink;
+use crate::laws::generic::scales::Scales;
+use crate::numeric::roots::{Place, root};
+
+/// Samples in a period of the declaration, and at least in a way between two switches.
+const SAMPLES: f64 = 200.0;
+const LEAST: f64 = 24.0;
+/// Nearer to a switch, or to another one, than this part of the way there is no kink.
+const EDGE: f64 = 1e-6;
+/// Accuracy of its part of the way: by (1) far more than enough.
+const CLOSE: f64 = 1e-10;
+/// Panels end elsewhere once a kink has moved by this part of the way.
+const MOVED: f64 = 1e-3;
+
+impl Equations {
+    /// The same with more nodes, at an orbit: panels end at its kinks.
+    pub(in crate::contact_equation) fn finer_at(&mut self, u: &[f64]) -> Option<Self> {
+        let value = u[u.len() - 1];
+        if !self.setting.has_kinks() {
+            return self.finer_equations(value);
+        }
+        let kinks = self.kinks(u)?;
+        let system = self.setting.system.as_ref();
+        self.on(self.skeleton.finer_with(system, &self.values, kinks), value)
+    }
+
+    /// Where the slopes of forces jump on an orbit, between switches. `None` where there is none.
+    pub(in crate::contact_equation) fn kinks(&mut self, u: &[f64]) -> Option<Vec<Kink>> {
+        self.compute(u, false);
+        (!self.failed).then(|| self.kinks_of_last(u))
+    }
+
+    /// The same of the orbit of the last pass.
+    pub(in crate::contact_equation) fn kinks_of_last(&self, u: &[f64]) -> Vec<Kink> {
+        if !self.setting.has_kinks() {
+            return Vec::new();
+        }
+        let motion = Motion::of(self);
+        let gaps = Gaps {
+            values: &self.values,
+            at: &|phase: f64, state: &mut [f64]| motion.at(phase, state),
+            coordinates: self.values.linear.positions.nrows(),
+        };
+        kinks(&self.setting, &gaps, &self.skeleton, u)
+    }
+
+    /// Unknowns of an orbit, or changes of them there, as those of [`Equations::finer_at`].
+    pub(in crate::contact_equation) fn finer_unknowns(
+        &self,
+        finer: &Self,
+        at: &[f64],
+        u: &[f64],
+    ) -> Vec<f64> {
+        if self.setting.has_kinks() {
+            self.skeleton.rearranged(&finer.skeleton, at, u)
+        } else {
+            self.skeleton.interpolated(&finer.skeleton, u)
+        }
+    }
+}
+
+/// Kinks of a motion, between the switches of a skeleton at these unknowns.
+pub(in crate::contact_equation) fn kinks(
+    setting: &Setting,
+    gaps: &Gaps<'_>,
+    skeleton: &Skeleton,
+    u: &[f64],
+) -> Vec<Kink> {
+    let mut found = Vec::new();
+    if !setting.has_kinks() {
+        return found;
+    }
+    for after in 0..=skeleton.switches.len() {
+        let from = after.checked_sub(1).map_or(Cut::Begin, Cut::Switch);
+        let to = if after < skeleton.switches.len() {
+            Cut::Switch(after)
+        } else {
+            Cut::End
+        };
+        let [begin, end] = [from, to].map(|cut| skeleton.place(u, Mark::at(cut)).phase);
+        let first = |interval: &&Interval| interval.from == Mark::at(from);
+        let Some(interval) = skeleton.intervals.iter().find(first) else {
+            continue;
+        };
+        if end <= begin {
+            continue;
+        }
+        let mut parts = Vec::new();
+        for active in &interval.active {
+            let contact = &gaps.values.contacts[active.contact];
+            let Some(scales) = setting.kinked(contact.law, active.piece) else {
+                continue;
+            };
+            let gap = |part: f64| gaps.gap(active.contact, begin + part * (end - begin));
+            let samples = (SAMPLES * (end - begin) / TAU).max(LEAST) as usize;
+            add(scales, contact, active.piece, samples, gap, &mut parts);
+        }
+        parts.sort_by(f64::total_cmp);
+        parts.dedup_by(|next, kept| *next - *kept < EDGE);
+        found.extend(parts.into_iter().map(|part| Kink { after, part }));
+    }
+    found
+}
+
+/// Adds the parts of a way where an operand of a contact changes its sign.
+fn add(
+    mut scales: Scales,
+    contact: &Contact,
+    piece: usize,
+    samples: usize,
+    gap: impl Fn(f64) -> [f64; 2],
+    parts: &mut Vec<f64>,
+) {
+    scales.set(&contact.arguments, &contact.levels);
+    let place = |index: usize| EDGE + (1.0 - 2.0 * EDGE) * index as f64 / samples as f64;
+    let sampled = (0..=samples).map(|index| gap(place(index)));
+    let (gaps, rates): (Vec<f64>, Vec<f64>) = sampled.map(|[gap, rate]| (gap, rate)).unzip();
+    let operands: Vec<Vec<f64>> = scales
+        .bending(piece, &gaps, &rates)
+        .map(<[f64]>::to_vec)
+        .collect();
+    for (which, values) in operands.iter().enumerate() {
+        for (index, pair) in values.windows(2).enumerate() {
+            if pair[0] * pair[1] >= 0.0 {
+                continue;
+            }
+            let [a, b] = [0, 1].map(|end| Place {
+                x: place(index + end),
+                value: pair[end],
+            });
+            let there = root(a, b, CLOSE, |part| {
+                let [gap, rate] = gap(part);
+                let (gap, rate) = ([gap], [rate]);
+                let mut operands = scales.bending(piece, &gap, &rate);
+                operands.nth(which).map_or(f64::NAN, |value| value[0])
+            });
+            parts.extend(there);
+        }
+    }
+}
+
+/// Whether panels end where the kinks of an orbit are.
+pub(in crate::contact_equation) fn are_at(ends: &[Kink], kinks: &[Kink]) -> bool {
+    let same = |(a, b): (&Kink, &Kink)| a.after == b.after && (a.part - b.part).abs() <= MOVED;
+    ends.len() == kinks.len() && ends.iter().zip(kinks).all(same)
+}
