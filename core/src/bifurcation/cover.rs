@@ -5,7 +5,8 @@
 //! followed until they have settled. Every orbit that they settle to lies on a branch that is known, or is where another one is begun.
 //!
 //! Initial states are the state of the nearest orbit that is known, as where a response jumps; rest at the origin; and then points of
-//! the additive sequence of Roberts (2018), which fills a box evenly, in boxes of three sizes around the orbits that are known.
+//! the additive sequence of Roberts (2018), which fills a box evenly, in boxes of three sizes around the orbits that are known. Last come
+//! the images, under the symmetries of the system, of the orbits that were found.
 
 use std::ops::ControlFlow;
 
@@ -15,10 +16,12 @@ use super::stretches::{Lacking, without};
 use crate::attractors::basin::Fate;
 use crate::branches::point::Point;
 use crate::branches::progress::{Progress, Stage};
+use crate::branches::recurrence::CyclicSymmetry;
 use crate::error::Error;
 use crate::model::layout::Layout;
 use crate::model::validate;
 use crate::response::{FrequencyResponse, OrbitMethod};
+use crate::shooting::{Asked, Shooting};
 use crate::system::Variable;
 use crate::time;
 use crate::time::centred::{centre, centred};
@@ -133,7 +136,8 @@ pub struct Searched {
     pub longest: usize,
     /// Periods for which motions were followed at most.
     pub patience: usize,
-    /// What became of the motion from each initial state; [`Fate::Periodic`] counts [`orbits`](Self::orbits).
+    /// What became of the motion from each initial state, and from each image of an orbit under a symmetry of the system that no motion
+    /// had settled to before; [`Fate::Periodic`] counts [`orbits`](Self::orbits).
     pub fates: Vec<Fate>,
     /// The orbits that motions settled to.
     pub orbits: Vec<SettledTo>,
@@ -293,6 +297,10 @@ impl<M: OrbitMethod> Search<'_, M> {
                 break;
             }
         }
+        if !self.observer.interrupted {
+            let symmetries = self.symmetries(value);
+            fates.extend(motions.follow_images(&symmetries));
+        }
         // Numbered anew without those that no motion has settled to.
         let mut numbers = vec![0; motions.orbits.len()];
         let mut orbits = Vec::new();
@@ -308,6 +316,19 @@ impl<M: OrbitMethod> Search<'_, M> {
             }
         }
         Ok(Settled { fates, orbits })
+    }
+
+    /// The symmetries that take motions into motions at a value.
+    fn symmetries(&self, value: f64) -> Vec<CyclicSymmetry> {
+        let asked = Asked::of(&self.response.request, &Shooting::new()).problem(value, value);
+        let Ok(problem) = asked else {
+            return Vec::new();
+        };
+        let at_once = problem.at_once.into_iter();
+        let at_once = at_once.map(|image| CyclicSymmetry { parts: 1, image });
+        let mut symmetries: Vec<CyclicSymmetry> = at_once.chain(problem.symmetries).collect();
+        symmetries.retain(|symmetry| symmetry.parts > 1 || !symmetry.image.is_identity());
+        symmetries
     }
 
     /// Whether an orbit that is shifted along what does not hold it is another one that a motion may settle to.

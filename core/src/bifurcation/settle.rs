@@ -8,6 +8,7 @@ use std::ops::ControlFlow;
 
 use crate::attractors::basin::{Fate, Finder};
 use crate::attractors::lyapunov::Lyapunov;
+use crate::branches::recurrence::CyclicSymmetry;
 use crate::numeric::estimate::Estimate;
 use crate::time::FlowError;
 use crate::time::stroboscope::Stroboscope;
@@ -113,6 +114,30 @@ impl Motions {
             }
         }
         self.judge(&state)
+    }
+
+    /// What becomes of the motions from the images of all orbits that are not known: with `q(t)` also `S^-1 q(t + T/m)` is a motion, an orbit
+    /// is as stable as its image, and few motions may settle to either.
+    pub(super) fn follow_images(&mut self, symmetries: &[CyclicSymmetry]) -> Vec<Fate> {
+        let mut fates = Vec::new();
+        let mut number = 0;
+        while let Some(orbit) = self.orbits.get(number) {
+            let first = orbit.states[0].clone();
+            for CyclicSymmetry { parts, image } in symmetries {
+                let mut later = first.clone();
+                if *parts > 1 && self.map.pass_part(*parts, &mut later).is_err() {
+                    continue;
+                }
+                // S^-1 is the power before the identity.
+                let inverse = image.power(image.order() - 1);
+                let start = inverse.of_states(&later, later.len() / 2);
+                if self.near(&start, SAME).is_none() {
+                    fates.push(self.follow(&start));
+                }
+            }
+            number += 1;
+        }
+        fates
     }
 
     /// Over one period.

@@ -146,6 +146,12 @@ impl Stroboscope {
         self.pass(1, state, None, Some(see))
     }
 
+    /// Moves a state over one of so many parts of a period, from where the map begins.
+    pub(crate) fn pass_part(&mut self, parts: usize, state: &mut [f64]) -> Result<(), FlowError> {
+        let end = self.phase + TAU / parts as f64;
+        self.flow.advance(self.phase, end, state, None, None)
+    }
+
     fn pass(
         &mut self,
         periods: usize,
