@@ -11,7 +11,7 @@
 use std::ops::ControlFlow;
 
 use super::diagram::{Diagram, Origin, Reason, Search};
-use super::settle::{Motions, Patience};
+use super::settle::{Images, Motions, Patience};
 use super::stretches::{Lacking, without};
 use crate::attractors::basin::Fate;
 use crate::branches::point::Point;
@@ -284,12 +284,19 @@ impl<M: OrbitMethod> Search<'_, M> {
             forces,
         };
         let mut motions = Motions::new(starts.map, starts.units, patience);
-        let mut fates = vec![Fate::Unknown; starts.states.len()];
-        for (index, start) in starts.states.iter().enumerate() {
-            fates[index] = motions.follow(start);
+        let symmetries = self.symmetries(value);
+        let total = starts.states.len();
+        let mut starts = starts.states.into_iter();
+        let mut images = Images::default();
+        let mut fates = Vec::new();
+        while let Some(start) = starts
+            .next()
+            .or_else(|| motions.image(&symmetries, &mut images))
+        {
+            fates.push(motions.follow(&start));
             let progress = Progress {
-                total: Some(starts.states.len()),
-                ..Progress::at(Stage::Settling, index + 1, value)
+                total: Some(total.max(fates.len())),
+                ..Progress::at(Stage::Settling, fates.len(), value)
             };
             let cancelled = self.response.request.cancel.is_cancelled();
             if cancelled || self.observer.see(progress) == ControlFlow::Break(()) {
@@ -297,10 +304,7 @@ impl<M: OrbitMethod> Search<'_, M> {
                 break;
             }
         }
-        if !self.observer.interrupted {
-            let symmetries = self.symmetries(value);
-            fates.extend(motions.follow_images(&symmetries));
-        }
+        fates.resize(fates.len().max(total), Fate::Unknown);
         // Numbered anew without those that no motion has settled to.
         let mut numbers = vec![0; motions.orbits.len()];
         let mut orbits = Vec::new();
@@ -327,7 +331,8 @@ impl<M: OrbitMethod> Search<'_, M> {
         let at_once = problem.at_once.into_iter();
         let at_once = at_once.map(|image| CyclicSymmetry { parts: 1, image });
         let mut symmetries: Vec<CyclicSymmetry> = at_once.chain(problem.symmetries).collect();
-        symmetries.retain(|symmetry| symmetry.parts > 1 || !symmetry.image.is_identity());
+        // A shift in time alone gives the same branch.
+        symmetries.retain(|symmetry| !symmetry.image.is_identity());
         symmetries
     }
 

@@ -51,6 +51,13 @@ pub(super) struct Patience {
     pub(super) forces: usize,
 }
 
+/// Which images of orbits were looked at.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Images {
+    orbit: usize,
+    symmetry: usize,
+}
+
 /// Motions at one value, one after the other.
 pub(super) struct Motions {
     map: Stroboscope,
@@ -116,28 +123,34 @@ impl Motions {
         self.judge(&state)
     }
 
-    /// What becomes of the motions from the images of all orbits that are not known: with `q(t)` also `S^-1 q(t + T/m)` is a motion, an orbit
-    /// is as stable as its image, and few motions may settle to either.
-    pub(super) fn follow_images(&mut self, symmetries: &[CyclicSymmetry]) -> Vec<Fate> {
-        let mut fates = Vec::new();
-        let mut number = 0;
-        while let Some(orbit) = self.orbits.get(number) {
-            let first = orbit.states[0].clone();
-            for CyclicSymmetry { parts, image } in symmetries {
-                let mut later = first.clone();
-                if *parts > 1 && self.map.pass_part(*parts, &mut later).is_err() {
-                    continue;
-                }
-                // S^-1 is the power before the identity.
-                let inverse = image.power(image.order() - 1);
-                let start = inverse.of_states(&later, later.len() / 2);
-                if self.near(&start, SAME).is_none() {
-                    fates.push(self.follow(&start));
-                }
+    /// The next image of an orbit that is none of those that are known: with `q(t)` also `S^-1 q(t + T/m)` is a motion, an orbit is as stable as
+    /// its image, and few motions may settle to either.
+    pub(super) fn image(
+        &mut self,
+        symmetries: &[CyclicSymmetry],
+        images: &mut Images,
+    ) -> Option<Vec<f64>> {
+        while let Some(orbit) = self.orbits.get(images.orbit) {
+            let Some(CyclicSymmetry { parts, image }) = symmetries.get(images.symmetry) else {
+                *images = Images {
+                    orbit: images.orbit + 1,
+                    symmetry: 0,
+                };
+                continue;
+            };
+            images.symmetry += 1;
+            let mut later = orbit.states.first()?.clone();
+            if *parts > 1 && self.map.pass_part(*parts, &mut later).is_err() {
+                continue;
             }
-            number += 1;
+            // S^-1 is the power before the identity.
+            let inverse = image.power(image.order() - 1);
+            let start = inverse.of_states(&later, later.len() / 2);
+            if self.near(&start, SAME).is_none() {
+                return Some(start);
+            }
         }
-        fates
+        None
     }
 
     /// Over one period.

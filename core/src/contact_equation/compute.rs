@@ -207,7 +207,7 @@ fn ended(
     Ok(Followed { branch, rest })
 }
 
-/// Kinks of a first orbit are located so often at most: the guess has others.
+/// Kinks of a first orbit are located so often at most.
 const RELOCATED: usize = 3;
 
 /// A run whose equations fit a first orbit, and its unknowns.
@@ -247,11 +247,10 @@ fn fitting(problem: &ContactProblem, first: First) -> Option<(Run<'_>, Vec<f64>)
         if run.equations.failed {
             return None;
         }
-        let is_at_kinks = tried >= RELOCATED || !run.has_moved_kinks(&u);
-        if run.fits(&u) != Fits::No && is_at_kinks {
+        if run.fits(&u) != Fits::No {
             // Another orbit may come back earlier than the one that was looked for.
             let other = tried > 0 && problem.earlier(&run.equations, problem.same()).is_some();
-            return (!other).then_some((run, u));
+            return (!other).then(|| at_kinks(run, u));
         }
         if tried < REFUSALS {
             (run.equations, u) = run.replanned(&u)?;
@@ -260,6 +259,32 @@ fn fitting(problem: &ContactProblem, first: First) -> Option<(Run<'_>, Vec<f64>)
         }
     }
     None
+}
+
+/// A first orbit with panels that end at its kinks: those of the guess are elsewhere.
+fn at_kinks(mut run: Run<'_>, mut u: Vec<f64>) -> (Run<'_>, Vec<f64>) {
+    for _ in 0..RELOCATED {
+        if !run.has_moved_kinks() {
+            break;
+        }
+        let Some(mut equations) = run.equations.at_kinks(&u) else {
+            break;
+        };
+        let mut there = run.equations.rearranged(&equations, &u);
+        let mut newton = Newton::new(&equations);
+        if solve::at_value(&mut equations, &mut newton, &mut there, AT_START).is_err() {
+            break;
+        }
+        let former = std::mem::replace(&mut run.equations, equations);
+        run.equations.compute(&there, false);
+        if run.equations.failed || run.fits(&there) == Fits::No {
+            run.equations = former;
+            run.equations.compute(&u, false);
+            break;
+        }
+        u = there;
+    }
+    (run, u)
 }
 
 /// A solution near an orbit that is given by its series. What comes back earlier is followed until then only.

@@ -144,7 +144,7 @@ fn located_again(run: &mut Run<'_>, at: &CurvePoint, test: Test, locate: Locate)
         let Some(mut next) = from.finer_at(&point.u) else {
             break;
         };
-        let there = |u: &[f64]| from.finer_unknowns(&next, &point.u, u);
+        let there = |u: &[f64]| from.rearranged(&next, u);
         let start = CurvePoint {
             u: there(&point.u),
             tangent: there(&point.tangent),
@@ -450,7 +450,7 @@ fn with_more_nodes(equations: &mut Equations, mut u: Vec<f64>, square: usize) ->
         let Some(mut next) = from.finer_at(&u) else {
             break;
         };
-        let mut there = from.finer_unknowns(&next, &u, &u);
+        let mut there = from.rearranged(&next, &u);
         there[square] = 0.0;
         let mut newton = Newton::new(&next);
         if solve::with_held(&mut next, &mut newton, &mut there, square, OPTIONS).is_err() {

@@ -118,6 +118,8 @@ struct Next {
     equations: Equations,
     u: Vec<f64>,
     resolution: usize,
+    /// Only panels end elsewhere.
+    same: bool,
 }
 
 /// Beside a touch a tangent in other unknowns is a difference across it, and may lead back. The last step tells which way the walk goes.
@@ -209,6 +211,19 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             equations,
             u,
             resolution,
+            same: false,
+        });
+        self.next.is_some()
+    }
+
+    /// Prepares the same equations with panels that end at the kinks of an orbit. Says whether there are any.
+    fn prepare_at_kinks(&mut self, u: &[f64]) -> bool {
+        let found = self.run.equations.at_kinks(u);
+        self.next = found.map(|equations| Next {
+            u: self.run.equations.rearranged(&equations, u),
+            equations,
+            resolution: self.run.resolution,
+            same: true,
         });
         self.next.is_some()
     }
@@ -222,16 +237,20 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         placed.is_some()
     }
 
-    /// The resolution that the last error asks for.
-    fn wanted(&self, point: &Point) -> usize {
-        let now = self.run.resolution;
+    /// How many times as large as the tolerance the errors of a point are.
+    fn excess(&self, point: &Point) -> f64 {
         let sizes = point.stability.multipliers.iter().map(|m| m.norm());
         let largest = sizes.fold(1.0, f64::max);
         let asked = self.run.problem.asked.stability;
         let spread = if asked { point.stability.error } else { 0.0 };
         let errors = [point.error.unwrap_or(0.0), spread / (MULTIPLIERS * largest)];
-        let error = errors.map(|error| error / self.run.problem.tolerance);
-        let error = error[0].max(error[1]);
+        errors[0].max(errors[1]) / self.run.problem.tolerance
+    }
+
+    /// The resolution that the last error asks for.
+    fn wanted(&self, point: &Point) -> usize {
+        let now = self.run.resolution;
+        let error = self.excess(point);
         // More nodes are of no use where no force is unknown.
         let has_nodes = self.run.equations.skeleton.forces > 0;
         if error > 1.0 && has_nodes && now + 1 < RESOLUTIONS.len() {
@@ -252,11 +271,12 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let coarse = wanted > self.run.resolution;
         let again = !stuck && self.refused < REFUSALS;
         // As many nodes may do where panels end at the kinks of this orbit.
-        let wanted = if coarse && read.overlooks.is_none() && self.run.has_moved_kinks(&at.u) {
-            self.run.resolution
-        } else {
-            wanted
-        };
+        let fails = read.overlooks.is_none() && self.excess(&read.point) > 1.0;
+        let moved = fails && again && self.refused == 0 && self.run.has_moved_kinks();
+        if moved && self.prepare_at_kinks(&at.u) {
+            self.refused += 1;
+            return Read::Refused;
+        }
         if coarse && again && self.prepare(&at.u, wanted) {
             self.refused += 1;
             return Read::Refused;
@@ -275,6 +295,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         }
         let other = fits == Fits::Soon || wanted != self.run.resolution;
         if other && !stuck && self.prepare(&at.u, wanted) {
+            return Read::ResizeBehind;
+        }
+        if fits == Fits::Moved && !stuck && self.prepare_at_kinks(&at.u) {
             return Read::ResizeBehind;
         }
         Read::Kept
@@ -496,6 +519,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
             equations,
             u,
             resolution,
+            same,
         }) = self.next.take()
         else {
             return;
@@ -517,6 +541,13 @@ impl BranchProblem for ContactBranch<'_, '_> {
         let mut point = |of: &CurvePoint| {
             if of.parameter() >= NOWHERE {
                 return None;
+            }
+            if same {
+                return Some(CurvePoint {
+                    u: self.run.equations.rearranged(&equations, &of.u),
+                    tangent: self.run.equations.rearranged(&equations, &of.tangent),
+                    scale: of.scale,
+                });
             }
             let found = self.run.point_in(of, &equations, &u);
             found.filter(is_finite)

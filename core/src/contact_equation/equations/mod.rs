@@ -56,7 +56,7 @@ use super::linear_part::block::{Block, add};
 use super::linear_part::configuration::Configuration;
 use super::linear_part::values::Values;
 use super::skeleton::Skeleton;
-use super::skeleton::placement::Told;
+use super::skeleton::placement::{Kink, Told};
 use crate::continuation::arrow::links::{Basis, PairLinks};
 use crate::continuation::chain::{Chain, Size};
 use crate::continuation::jacobian::{Jacobian, Partition};
@@ -113,13 +113,15 @@ pub(super) struct Equations {
     pub(super) passed: Vec<Passed>,
     /// Of the last pass, when they are asked for.
     pub(super) extremes: OnceCell<Extremes>,
+    /// Where slopes of forces jump between switches in it, when that is asked for.
+    pub(super) kinks: OnceCell<Vec<Kink>>,
     /// Contacts in each other's place when an orbit has come back, once they were seen.
     pub(super) images: OnceCell<Vec<Image>>,
     /// The last orbit of the branch, and the last one that was found.
     pub(super) known: [Vec<f64>; 2],
     room: Room,
     /// Unknowns of the last pass, and which derivatives it has made.
-    last: Vec<f64>,
+    pub(super) last: Vec<f64>,
     derived: Derived,
     /// It has the derivatives by the parameter.
     by_parameter: bool,
@@ -156,6 +158,7 @@ impl Equations {
             eliminated: Eliminated::default(),
             passed: Vec::new(),
             extremes: OnceCell::new(),
+            kinks: OnceCell::new(),
             images: OnceCell::new(),
             known: [Vec::new(), Vec::new()],
             room: Room::default(),
@@ -268,6 +271,7 @@ impl Equations {
         // Derivatives do not move them.
         if !known {
             self.extremes = OnceCell::new();
+            self.kinks = OnceCell::new();
         }
         self.failed = !self.set(u[n]);
         if self.failed {

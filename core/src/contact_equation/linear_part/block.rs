@@ -178,10 +178,11 @@ impl Block {
     /// `-A^-1` of a constant load; nothing where an exponent is zero.
     pub(in crate::contact_equation) fn held(&self, load: Pair) -> Pair {
         let determinant = self.determinant;
-        if determinant.abs() <= f64::EPSILON * self.rate().powi(2) || determinant == 0.0 {
+        let [[a, b], [c, d]] = self.matrix;
+        let rounding = 4.0 * f64::EPSILON * ((a * d).abs() + (b * c).abs());
+        if determinant.abs() <= rounding {
             return [0.0; 2];
         }
-        let [[a, b], [c, d]] = self.matrix;
         [
             (b * load[1] - d * load[0]) / determinant,
             (c * load[0] - a * load[1]) / determinant,
@@ -341,7 +342,9 @@ impl Block {
                 slope(square * s / 3.0),
             ];
         }
-        if let Some(exponents) = self.real_exponents() {
+        // Where both exponents do little within the time, (3) cancels, and few rules do.
+        let apart = self.root * s.abs() > 1.0;
+        if let Some(exponents) = self.real_exponents().filter(|_| apart) {
             return by_exponents(exponents, frequency, s);
         }
         let wave = Complex::new(0.0, frequency);
@@ -524,6 +527,29 @@ mod tests {
                 (r.re - exact).abs() <= 2.0 * (k * k + 1.0) / c.powi(3) + 1e-15 * exact,
                 "{c} {k}"
             );
+        }
+    }
+
+    #[test]
+    fn responses_of_slow_decays_are_known_to_rounding() {
+        // x'' + c x' = 1 from rest: x' = (1 - e^(-c s)) / c, x = (s - x') / c.
+        for c in [1e-9, 1e-6, 1e-3, 0.1, 3.0, 200.0] {
+            let block = Block::new([[0.0, 1.0], [0.0, -c]]);
+            let d = block.deviation;
+            for s in [1e-5, 1e-2, 0.7, 6.0] {
+                let [p, r, ..] = block.response_at_rest(0.0, s);
+                let rate = p + r * d[1][1];
+                let exact = -(-c * s).exp_m1() / c;
+                assert!((rate.re / exact - 1.0).abs() < 1e-13, "{c} {s}");
+                if c * s < 1e-2 {
+                    let z = c * s;
+                    let exact = 0.5
+                        * s
+                        * s
+                        * (1.0 - z / 3.0 + z * z / 12.0 - z.powi(3) / 60.0 + z.powi(4) / 360.0);
+                    assert!((r.re * d[0][1] / exact - 1.0).abs() < 1e-11, "{c} {s}");
+                }
+            }
         }
     }
 

@@ -123,6 +123,14 @@ pub(in crate::contact_equation) fn read(
     }
 }
 
+/// Where a coordinate is smallest and largest, until the orbit comes back.
+pub(in crate::contact_equation) fn extremes_of(
+    motion: &Motion<'_>,
+    coordinate: usize,
+) -> [Place; 2] {
+    farthest(motion, motion.sampled(), Of::Coordinate(coordinate))
+}
+
 /// The smallest and the largest value of a signal.
 fn farthest(motion: &Motion<'_>, sampled: &[Sampled], of: Of<'_>) -> [Place; 2] {
     let mut ways = Vec::new();

@@ -23,64 +23,84 @@ use crate::contact_equation::equations::setting::Setting;
 use crate::contact_equation::linear_part::values::Contact;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::interval::{Cut, Interval, Mark};
-use crate::contact_equation::skeleton::placement::Kink;
+use crate::contact_equation::skeleton::placement::{EDGE, Kink, MOST};
 use crate::laws::generic::scales::Scales;
 use crate::numeric::roots::{Place, root};
 
 /// Samples in a period of the declaration, and at least in a way between two switches.
 const SAMPLES: f64 = 200.0;
 const LEAST: f64 = 24.0;
-/// Nearer to a switch, or to another one, than this part of the way there is no kink.
-const EDGE: f64 = 1e-6;
 /// Accuracy of its part of the way: by (1) far more than enough.
 const CLOSE: f64 = 1e-10;
-/// Panels end elsewhere once a kink has moved by this part of the way.
-const MOVED: f64 = 1e-3;
+/// Operands smaller than this part of their largest value on a way are rounding.
+const NOISE: f64 = 1e-9;
 
 impl Equations {
     /// The same with more nodes, at an orbit: panels end at its kinks.
     pub(in crate::contact_equation) fn finer_at(&mut self, u: &[f64]) -> Option<Self> {
-        let value = u[u.len() - 1];
-        if !self.setting.has_kinks() {
-            return self.finer_equations(value);
-        }
-        let kinks = self.kinks(u)?;
-        let system = self.setting.system.as_ref();
-        self.on(self.skeleton.finer_with(system, &self.values, kinks), value)
-    }
-
-    /// Where the slopes of forces jump on an orbit, between switches. `None` where there is none.
-    pub(in crate::contact_equation) fn kinks(&mut self, u: &[f64]) -> Option<Vec<Kink>> {
         self.compute(u, false);
-        (!self.failed).then(|| self.kinks_of_last(u))
-    }
-
-    /// The same of the orbit of the last pass.
-    pub(in crate::contact_equation) fn kinks_of_last(&self, u: &[f64]) -> Vec<Kink> {
-        if !self.setting.has_kinks() {
-            return Vec::new();
+        if !self.has_kinks() {
+            return self.finer_equations(u[u.len() - 1]);
         }
-        let motion = Motion::of(self);
-        let gaps = Gaps {
-            values: &self.values,
-            at: &|phase: f64, state: &mut [f64]| motion.at(phase, state),
-            coordinates: self.values.linear.positions.nrows(),
-        };
-        kinks(&self.setting, &gaps, &self.skeleton, u)
+        let kinks = self.kinks()?.to_vec();
+        let values = self.setting.values(self.made)?;
+        let system = self.setting.system.as_ref();
+        let skeleton = self.skeleton.finer_with(system, &values, kinks);
+        self.on(skeleton, u[u.len() - 1])
     }
 
-    /// Unknowns of an orbit, or changes of them there, as those of [`Equations::finer_at`].
-    pub(in crate::contact_equation) fn finer_unknowns(
-        &self,
-        finer: &Self,
-        at: &[f64],
-        u: &[f64],
-    ) -> Vec<f64> {
-        if self.setting.has_kinks() {
-            self.skeleton.rearranged(&finer.skeleton, at, u)
+    /// The same with panels that end at the kinks of an orbit.
+    pub(in crate::contact_equation) fn at_kinks(&mut self, u: &[f64]) -> Option<Self> {
+        self.compute(u, false);
+        let kinks = self.kinks()?.to_vec();
+        let values = self.setting.values(self.made)?;
+        let system = self.setting.system.as_ref();
+        self.on(self.skeleton.with(system, &values, kinks), self.made)
+    }
+
+    /// Unknowns, or changes of them, as those of [`Equations::finer_at`] or [`Equations::at_kinks`].
+    pub(in crate::contact_equation) fn rearranged(&self, other: &Self, u: &[f64]) -> Vec<f64> {
+        let same = self.skeleton.placement.kinks == other.skeleton.placement.kinks;
+        if same && !self.has_kinks() {
+            self.skeleton.interpolated(&other.skeleton, u)
         } else {
-            self.skeleton.interpolated(&finer.skeleton, u)
+            self.skeleton.rearranged(&other.skeleton, u)
         }
+    }
+
+    /// Whether panels end at kinks, or would at those of the last pass.
+    pub(in crate::contact_equation) fn has_kinks(&self) -> bool {
+        let known = !self.skeleton.placement.kinks.is_empty();
+        known || self.kinks().is_some_and(|kinks| !kinks.is_empty())
+    }
+
+    /// Where slopes of forces jump in the last pass, between switches; `None` where it has failed.
+    pub(in crate::contact_equation) fn kinks(&self) -> Option<&[Kink]> {
+        if self.failed {
+            return None;
+        }
+        if !self.setting.has_kinks() {
+            return Some(&[]);
+        }
+        let found = self.kinks.get_or_init(|| {
+            let motion = Motion::of(self);
+            let gaps = Gaps {
+                values: &self.values,
+                at: &|phase: f64, state: &mut [f64]| motion.at(phase, state),
+                coordinates: self.values.linear.positions.nrows(),
+            };
+            kinks(&self.setting, &gaps, &self.skeleton, &self.last)
+        });
+        Some(found)
+    }
+
+    /// Whether kinks of the last pass are farther from where panels end than this part of a way.
+    pub(in crate::contact_equation) fn has_moved_kinks(&self, most: f64) -> bool {
+        let ends = &self.skeleton.placement.kinks;
+        let same = |(a, b): (&Kink, &Kink)| a.after == b.after && (a.part - b.part).abs() <= most;
+        let are_there =
+            |kinks: &[Kink]| ends.len() == kinks.len() && ends.iter().zip(kinks).all(same);
+        self.kinks().is_some_and(|kinks| !are_there(kinks))
     }
 }
 
@@ -122,6 +142,10 @@ pub(in crate::contact_equation) fn kinks(
         }
         parts.sort_by(f64::total_cmp);
         parts.dedup_by(|next, kept| *next - *kept < EDGE);
+        // So many are the rounding of an operand that rests.
+        if parts.len() > MOST {
+            continue;
+        }
         found.extend(parts.into_iter().map(|part| Kink { after, part }));
     }
     found
@@ -137,6 +161,10 @@ fn add(
     parts: &mut Vec<f64>,
 ) {
     scales.set(&contact.arguments, &contact.levels);
+    let gap = |part: f64| {
+        let [value, rate] = gap(part);
+        [contact.held(piece, value), rate]
+    };
     let place = |index: usize| EDGE + (1.0 - 2.0 * EDGE) * index as f64 / samples as f64;
     let sampled = (0..=samples).map(|index| gap(place(index)));
     let (gaps, rates): (Vec<f64>, Vec<f64>) = sampled.map(|[gap, rate]| (gap, rate)).unzip();
@@ -145,14 +173,18 @@ fn add(
         .map(<[f64]>::to_vec)
         .collect();
     for (which, values) in operands.iter().enumerate() {
-        for (index, pair) in values.windows(2).enumerate() {
-            if pair[0] * pair[1] >= 0.0 {
+        let largest = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        // What is zero but for rounding has no sign.
+        let known = (0..values.len()).filter(|index| values[*index].abs() > NOISE * largest);
+        let known: Vec<usize> = known.collect();
+        for pair in known.windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|index| Place {
+                x: place(index),
+                value: values[index],
+            });
+            if (a.value > 0.0) == (b.value > 0.0) {
                 continue;
             }
-            let [a, b] = [0, 1].map(|end| Place {
-                x: place(index + end),
-                value: pair[end],
-            });
             let there = root(a, b, CLOSE, |part| {
                 let [gap, rate] = gap(part);
                 let (gap, rate) = ([gap], [rate]);
@@ -162,10 +194,4 @@ fn add(
             parts.extend(there);
         }
     }
-}
-
-/// Whether panels end where the kinks of an orbit are.
-pub(in crate::contact_equation) fn are_at(ends: &[Kink], kinks: &[Kink]) -> bool {
-    let same = |(a, b): (&Kink, &Kink)| a.after == b.after && (a.part - b.part).abs() <= MOVED;
-    ends.len() == kinks.len() && ends.iter().zip(kinks).all(same)
 }

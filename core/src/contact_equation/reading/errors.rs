@@ -6,7 +6,8 @@
 //! max y - max x = y(t) - x(t) + O(y'(t)^2)                                                                     (1)
 //! ```
 //!
-//! That may vanish by chance. So the motions are compared at 24 phases as well where an error is to serve for orbits near by.
+//! Where another extreme is nearly as far, the largest one of `y` may be elsewhere, so that extremes of both are compared as well.
+//! (1) may vanish by chance. So the motions are compared at 24 phases as well where an error is to serve for orbits near by.
 //!
 //! Source: Danskin (1967), The Theory of Max-Min and its Application to Weapons Allocation Problems (derivatives of a largest value).
 
@@ -16,6 +17,7 @@ use crate::branches::moduli::multipliers;
 use crate::branches::observed::{EXTREMES, Motion as Extent, Observed};
 use crate::branches::point::Point;
 use crate::contact_equation::equations::Equations;
+use crate::contact_equation::orbit::extremes::extremes_of;
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::run::{DIFFERENCE, Run};
 use crate::continuation::follow::CurvePoint;
@@ -159,6 +161,27 @@ impl Run<'_> {
             motions.map_or(&[][..], |found| &found.coordinates),
             accuracy,
         )
+    }
+
+    /// How far peak-to-peak of a finer orbit is from that of this one where they have their extremes at different places: of two that are nearly as
+    /// far, errors between nodes choose. Zero where an output is asked for, whose extremes are looked for in both.
+    pub(in crate::contact_equation) fn other_extremes(&self, finer: &Equations) -> f64 {
+        let Some(found) = self.equations.extremes.get() else {
+            return 0.0;
+        };
+        let comes_back = finer.skeleton.recurrence().image.is_identity();
+        let asked = match self.accuracy() {
+            Accuracy::Coordinate(one) => one..one + 1,
+            Accuracy::Coordinates if comes_back => 0..found.coordinates.len(),
+            Accuracy::Coordinates | Accuracy::Output(_) => return 0.0,
+        };
+        let motion = Motion::of(finer);
+        let extent = |[low, high]: [Place; 2]| high.value - low.value;
+        let apart = asked.filter_map(|coordinate| {
+            let own = found.coordinates.get(coordinate)?;
+            Some(extent(extremes_of(&motion, coordinate)) - extent(*own))
+        });
+        apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
     }
 
     /// The same, since the last point.

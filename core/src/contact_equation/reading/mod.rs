@@ -183,6 +183,7 @@ impl Run<'_> {
             return Some(unknown(point, map));
         }
         let apart = self.apart(&finer, &point, other[other.len() - 1]);
+        let apart = apart.max(self.other_extremes(&finer));
         let everywhere = everywhere([&self.equations, &finer]);
         self.finer = Some(finer);
         let moves = apart > 0.0 || self.accuracy().peak_to_peak(&point.observed) > 0.0;
@@ -227,7 +228,7 @@ impl Run<'_> {
     /// leave out tells. Where that is more than is asked for, and every so often, a finer solution is asked again.
     pub(super) fn read_on(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
         // What a kink beside the end of a panel does to an orbit, the last coefficients of its forces do not tell.
-        if matches!(self.accuracy(), Accuracy::Output(_)) || self.equations.setting.has_kinks() {
+        if matches!(self.accuracy(), Accuracy::Output(_)) || self.equations.has_kinks() {
             return self.read(at);
         }
         let slope = at.parameter_slope().abs();
@@ -383,12 +384,12 @@ impl Run<'_> {
     /// The orbit with more nodes, by one step of Newton's method in the plane across the tangent, as in (1).
     fn corrected(&mut self, at: &CurvePoint) -> Option<Finer> {
         // Kinks are elsewhere on every orbit.
-        if self.finer.is_none() || self.equations.setting.has_kinks() {
+        if self.finer.is_none() || self.equations.has_kinks() {
             self.finer = self.equations.finer_at(&at.u);
         }
         let finer = self.finer.as_mut()?;
-        let mut u = self.equations.finer_unknowns(finer, &at.u, &at.u);
-        let tangent = self.equations.finer_unknowns(finer, &at.u, &at.tangent);
+        let mut u = self.equations.rearranged(finer, &at.u);
+        let tangent = self.equations.rearranged(finer, &at.tangent);
         let step = finer.across(&u, &tangent)?;
         for (x, by) in u.iter_mut().zip(&step) {
             *x -= by;

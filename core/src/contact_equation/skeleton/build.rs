@@ -15,6 +15,9 @@ use crate::law::{Law, Quantity, Variation};
 use crate::numeric::fourier::grading;
 use crate::system::System;
 
+/// Parts of a way, and of panels, that are nearer to each other than this are one.
+const CLOSE: f64 = 1e-6;
+
 impl Skeleton {
     /// From the switches of an orbit, in the order of time from its beginning on.
     pub(in crate::contact_equation) fn new(
@@ -142,18 +145,19 @@ impl Skeleton {
                 .collect();
         }
         let mut ends = way.kinks.clone();
-        ends.extend(is_whole.then_some(0.5));
+        let has_half = ends.iter().any(|end| (end - 0.5).abs() < CLOSE);
+        ends.extend((is_whole && !has_half).then_some(0.5));
         ends.push(1.0);
         ends.sort_by(f64::total_cmp);
         let (mut borders, mut from) = (vec![0.0], 0.0);
         for to in ends {
-            let panels = (asked * (to - from)).ceil().max(1.0) as usize;
+            // As many where rounding has made the part a little longer.
+            let panels = (asked * (to - from) - CLOSE).ceil().max(1.0) as usize;
             let border = |index: usize| from + (to - from) * index as f64 / panels as f64;
             borders.extend((1..panels).map(border));
             borders.push(to);
             from = to;
         }
-        borders.dedup();
         borders
     }
 

@@ -66,6 +66,12 @@ impl Interval {
         self.active.first().map_or(0, |active| active.first)
     }
 
+    /// Where it begins and ends, in parts of the way between two cuts.
+    pub(in crate::contact_equation) fn parts(&self) -> [f64; 2] {
+        let part = |mark: Mark, end: f64| if mark.from == mark.to { end } else { mark.part };
+        [part(self.from, 0.0), part(self.to, 1.0)]
+    }
+
     /// Half of the way from its beginning to its end.
     pub(in crate::contact_equation) fn middle(&self) -> Mark {
         // Panels of one way have the same ends; a whole one has its own.

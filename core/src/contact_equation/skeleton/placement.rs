@@ -51,6 +51,11 @@ pub(in crate::contact_equation) struct Placed {
     pub(in crate::contact_equation) phase: f64,
 }
 
+/// Nearer to a switch, or to another one, than this part of the way there is no kink.
+pub(in crate::contact_equation) const EDGE: f64 = 1e-6;
+/// Kinks of a way, at most.
+pub(in crate::contact_equation) const MOST: usize = 32;
+
 /// Where the slope of a force jumps between two cuts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -123,8 +128,10 @@ impl Placement {
         let within = |placed: &Placed| (*phase..=end).contains(&placed.phase);
         let told = |index: usize| self.is_told(index);
         let places = self.kinks.iter().map(|kink| (kink.after, kink.part));
-        let between =
-            |kink: &Kink| kink.after <= self.placed.len() && kink.part > 0.0 && kink.part < 1.0;
+        let between = |kink: &Kink| {
+            kink.after <= self.placed.len() && kink.part >= EDGE && kink.part <= 1.0 - EDGE
+        };
+        let apart = |a: &Kink, b: &Kink| a.after != b.after || b.part - a.part >= EDGE;
         on_pieces
             && (0.0..=length).contains(phase)
             && self.placed.iter().all(has_level)
@@ -133,6 +140,8 @@ impl Placement {
             && (0..self.placed.len()).all(told)
             && places.is_sorted_by(|a, b| a < b)
             && self.kinks.iter().all(between)
+            && self.kinks.is_sorted_by(apart)
+            && self.kinks.len() <= MOST * (self.placed.len() + 1)
     }
 
     /// Whether a switch is alone, or one of two that name each other: of the same gap at the same level, which rises at one of them.

@@ -1,15 +1,15 @@
 //! A skeleton with more nodes, and an orbit on it.
 
 use super::Skeleton;
-use super::interval::{Active, Interval};
+use super::interval::Interval;
 use super::placement::{Kink, Placement};
 use crate::contact_equation::collocation::nodes::{COUNTS, Nodes};
 use crate::contact_equation::linear_part::values::Values;
 use crate::system::System;
 
 impl Skeleton {
-    /// The same with panels that end at other kinks, and with more nodes.
-    pub(in crate::contact_equation) fn finer_with(
+    /// The same with panels that end at other kinks.
+    pub(in crate::contact_equation) fn with(
         &self,
         system: &dyn System,
         values: &Values,
@@ -19,56 +19,50 @@ impl Skeleton {
             kinks,
             ..self.placement.clone()
         };
-        let mut finer = Self::new(system, values, placement);
+        Self::new(system, values, placement)
+    }
+
+    /// The same with panels that end at other kinks, and with more nodes.
+    pub(in crate::contact_equation) fn finer_with(
+        &self,
+        system: &dyn System,
+        values: &Values,
+        kinks: Vec<Kink>,
+    ) -> Self {
+        let mut finer = self.with(system, values, kinks);
         for _ in 0..=self.refined {
             finer = finer.finer();
         }
         finer
     }
 
-    /// Extended unknowns, or changes of them, as those of equations with the same switches at these unknowns, and other panels: forces are
-    /// interpolated at the phases of nodes.
-    pub(in crate::contact_equation) fn rearranged(
-        &self,
-        to: &Self,
-        at: &[f64],
-        u: &[f64],
-    ) -> Vec<f64> {
+    /// Extended unknowns, or changes of them, as those of equations with the same switches and other panels: forces are interpolated at the
+    /// same part of the way between two switches.
+    pub(in crate::contact_equation) fn rearranged(&self, to: &Self, u: &[f64]) -> Vec<f64> {
         let mut rearranged = u[..self.told()].to_vec();
         rearranged.resize(to.unknowns(), 0.0);
         rearranged.push(u[u.len() - 1]);
-        let ends = |skeleton: &Self, interval: &Interval| {
-            [interval.from, interval.to].map(|mark| skeleton.place(at, mark).phase)
-        };
         let mut polynomials = Vec::new();
         for panel in &to.intervals {
-            let [from, end] = ends(to, panel);
-            for of in &panel.active {
-                for (node, target) in panel.nodes.targets[..panel.nodes.count()]
-                    .iter()
-                    .enumerate()
-                {
-                    let phase = from + target * (end - from);
-                    let known = self.intervals.iter().flat_map(|interval| {
-                        let own = |active: &&Active| active.contact == of.contact;
-                        let active = interval.active.iter().find(own)?;
-                        let [from, end] = ends(self, interval);
-                        let outside = (from - phase).max(phase - end).max(0.0);
-                        Some((outside, interval, active, (phase - from) / (end - from)))
-                    });
-                    let nearest = known.min_by(|a, b| a.0.total_cmp(&b.0));
-                    let Some((_, interval, active, psi)) =
-                        nearest.filter(|found| found.3.is_finite())
-                    else {
-                        continue;
-                    };
-                    polynomials.resize(interval.nodes.count(), 0.0);
-                    interval
-                        .nodes
-                        .polynomials(psi.clamp(0.0, 1.0), &mut polynomials);
-                    let forces = &u[active.first..][..polynomials.len()];
+            let [from, end] = panel.parts();
+            for node in 0..panel.nodes.count() {
+                let part = from + panel.nodes.targets[node] * (end - from);
+                let same = |known: &&Interval| {
+                    known.from.from == panel.from.from && part <= known.parts()[1]
+                };
+                let Some(known) = self.intervals.iter().find(same) else {
+                    continue;
+                };
+                let [first, last] = known.parts();
+                let psi = (part - first) / (last - first);
+                polynomials.resize(known.nodes.count(), 0.0);
+                known
+                    .nodes
+                    .polynomials(psi.clamp(0.0, 1.0), &mut polynomials);
+                for (of, at) in known.active.iter().zip(&panel.active) {
+                    let forces = &u[of.first..][..polynomials.len()];
                     let force = polynomials.iter().zip(forces).map(|(l, f)| l * f).sum();
-                    rearranged[of.first + node] = force;
+                    rearranged[at.first + node] = force;
                 }
             }
         }

@@ -8,7 +8,6 @@ use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::equations::{BACK, Equations};
 use crate::contact_equation::linear_part::configuration::Configuration;
 use crate::contact_equation::orbit::gaps::{Gaps, room};
-use crate::contact_equation::orbit::kinks::are_at;
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::run::Run;
 use crate::contact_equation::skeleton::placement::{Switch, Told};
@@ -17,6 +16,8 @@ use crate::contact_equation::skeleton::placement::{Switch, Told};
 pub(in crate::contact_equation) const SAME: f64 = 0.3;
 /// A gap that is beyond its level by this part of its size is elsewhere.
 const BEYOND: f64 = 1e-9;
+/// Panels end elsewhere once a kink has moved by this part of the way.
+const MOVED: f64 = 1e-3;
 /// Switches are told in other pairs where the way between two of them is this part of those that they are told by.
 const NEARER: f64 = 0.5;
 
@@ -25,6 +26,8 @@ const NEARER: f64 = 0.5;
 pub(in crate::contact_equation) enum Fits {
     /// They are right.
     Yes,
+    /// They are right, and panels are better that end elsewhere, at the kinks of the orbit.
+    Moved,
     /// They are right, and others are better from here on.
     Soon,
     /// The orbit is none: a gap is on another piece.
@@ -80,25 +83,26 @@ impl Run<'_> {
         }
         let found = motion.extremes().gaps.concat();
         let mut fits = self.pairs_fit(u);
-        let others = self.equations.kinks_of_last(u);
-        let moved = !are_at(&self.equations.skeleton.placement.kinks, &others);
-        if moved || self.is_watched_in_vain(u, &found) || !self.equations.is_sound() {
+        if self.is_watched_in_vain(u, &found) || !self.equations.is_sound() {
             fits = Fits::Soon;
         }
         for extreme in &found {
             match self.extreme_fits(u, extreme, &found) {
                 Fits::No => return Fits::No,
                 Fits::Soon => fits = Fits::Soon,
-                Fits::Yes => {}
+                Fits::Moved | Fits::Yes => {}
             }
+        }
+        if fits == Fits::Yes && self.has_moved_kinks() {
+            return Fits::Moved;
         }
         fits
     }
 
-    /// Whether panels end elsewhere than at the kinks of an orbit.
-    pub(in crate::contact_equation) fn has_moved_kinks(&mut self, u: &[f64]) -> bool {
-        let kinks = self.equations.kinks(u);
-        kinks.is_some_and(|kinks| !are_at(&self.equations.skeleton.placement.kinks, &kinks))
+    /// Whether kinks of the last pass are farther from where panels end than the tolerance asks for: what is left out goes as the square of that.
+    pub(in crate::contact_equation) fn has_moved_kinks(&self) -> bool {
+        let most = MOVED.min(0.1 * self.problem.tolerance.sqrt());
+        self.equations.has_moved_kinks(most)
     }
 
     /// Whether switches are told as they should be, and the beginning is away from them.
