@@ -5,6 +5,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use super::configuration::Kept;
 use super::block::{Block, Pair, times};
 use super::linear::{Linear, Seen, seen};
 use crate::model::layout::{ContactLayout, Layout, Term, constant};
@@ -312,6 +313,8 @@ pub(in crate::contact_equation) struct Values {
     pub(in crate::contact_equation) matrices: [DMatrix<f64>; 3],
     /// More than the time changes along the branch.
     pub(in crate::contact_equation) changes: bool,
+    /// The same while contacts are closed, as far as it was asked for.
+    pub(super) kept: Kept,
 }
 
 impl Values {
@@ -340,6 +343,7 @@ impl Values {
             load,
             matrices: [mass, damping, stiffness],
             changes: true,
+            kept: Kept::default(),
         };
         values.set_omega(omega, f64::from(system.facts().divisor));
         Some(values)

@@ -5,7 +5,7 @@
 //! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, equation (4.2).
 
 use super::motion::Room;
-use crate::contact_equation::collocation::nodes::{Nodes, points_for};
+use crate::contact_equation::collocation::nodes::Nodes;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::equations::pass_results::Passed;
 use crate::contact_equation::linear_part::block::{Block, Pair};
@@ -46,7 +46,7 @@ impl<'e> Forced<'e> {
         let fastest = blocks.map(Block::rate).fold(0.0, f64::max) * whole.abs();
         let slow = nodes.follows(fastest);
         if !slow {
-            nodes.partway(psi, points_for(fastest * nodes.widest()), &mut room.partway);
+            nodes.partway(psi, fastest, &mut room.partway);
         }
         nodes.through_ends(psi, &mut room.weights);
         let alone =
