@@ -290,12 +290,7 @@ impl Integrals {
 
 /// Adds kernels times weighted polynomials.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn add_kernels(
-    [c, k]: [&[f64]; 2],
-    time: f64,
-    weighted: &[f64],
-    [once, twice]: [&mut [f64]; 2],
-) {
+fn add_kernels([c, k]: [&[f64]; 2], time: f64, weighted: &[f64], [once, twice]: [&mut [f64]; 2]) {
     let rows = weighted.chunks_exact(once.len());
     for ((c, k), weighted) in c.iter().zip(k).zip(rows) {
         let [c, k] = [c * time, k * time];

@@ -108,7 +108,12 @@ impl Configuration {
             from: &found.inverse * states(own),
             blocks: found.blocks.clone(),
         };
-        let is_refined = found.blocks.iter().all(|block| block.squares().count() == 2);
+        // One pair has nothing beside it.
+        let is_refined = found.blocks.len() > 1
+            && found
+                .blocks
+                .iter()
+                .all(|block| block.squares().count() == 2);
         let linear = if is_refined {
             pairs = pairs.refined(&own.blocks, &products);
             own.in_pairs(pairs.clone(), found.dependence)

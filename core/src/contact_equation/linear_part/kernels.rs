@@ -228,7 +228,10 @@ mod tests {
                 let size = all.c.hypot(block.turns() * all.k);
                 let within = 4.0 * f64::EPSILON * size * (1.0 + block.rate());
                 assert!((one.c - all.c).abs() <= within, "{r} {part}");
-                assert!((one.k - all.k).abs() * block.turns() <= within, "{r} {part}");
+                assert!(
+                    (one.k - all.k).abs() * block.turns() <= within,
+                    "{r} {part}"
+                );
             }
         }
     }

@@ -159,7 +159,8 @@ mod tests {
         let seen = plain.positions.transpose() * DVector::from_fn(n, |r, _| stiff * sign(r));
         let found = known.refined(&plain.blocks, &[[input, seen]]);
         let missed = |block: &Block| {
-            let square = block.matrix[0][0] * block.matrix[1][1] - block.matrix[0][1] * block.matrix[1][0];
+            let square =
+                block.matrix[0][0] * block.matrix[1][1] - block.matrix[0][1] * block.matrix[1][0];
             let gaps = (0..n).map(|r| w(r) * w(r) - square);
             let value = 1.0 + gaps.clone().map(|gap| 4.0 * stiff / gap).sum::<f64>();
             let slope = gaps.map(|gap| 4.0 * stiff / (gap * gap)).sum::<f64>();
@@ -172,6 +173,9 @@ mod tests {
         let most = found.blocks.iter().map(missed).fold(0.0, f64::max);
         assert!(most < 2e-14, "{most:e}, {:e} before", slowest(&known));
         let rest = &found.to * &found.from - DMatrix::identity(2 * n, 2 * n);
-        assert!(slowest(&found) < 1e-14 && rest.row(0).amax() < 1e-13, "{rest}");
+        assert!(
+            slowest(&found) < 1e-14 && rest.row(0).amax() < 1e-13,
+            "{rest}"
+        );
     }
 }

@@ -5,8 +5,8 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::configuration::Kept;
 use super::block::{Block, Pair, times};
+use super::configuration::Kept;
 use super::linear::{Linear, Seen, seen};
 use crate::model::layout::{ContactLayout, Layout, Term, constant};
 use crate::system::{Part, System};
@@ -65,6 +65,11 @@ impl Moving {
     /// It does not move.
     pub(in crate::contact_equation) fn is_constant(&self) -> bool {
         self.waves.is_empty()
+    }
+
+    /// What does not move of it, if that is anything.
+    pub(in crate::contact_equation) fn constant(&self) -> &[f64] {
+        &self.constant
     }
 
     /// Writes a derivative by the phase; the zeroth is the vector.
