@@ -13,6 +13,7 @@
 //! Source: Davis and Rabinowitz (1984), Methods of Numerical Integration, section 2.9 (variable transformations); Berrut and Trefethen
 //! (2004), Barycentric Lagrange interpolation, equation (4.2).
 
+use std::ops::Range;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::grading::Grading;
@@ -29,8 +30,12 @@ const _: () = {
         place += 1;
     }
 };
-/// Points of the rules between two targets: of one that serves slow kernels, and of finer ones.
-const POINTS: [usize; 3] = [12, 24, 48];
+/// Points of the rules between two targets, and up to which angle of a kernel on the way each serves: polynomials through nodes turn by half of a period
+/// there, and with `n` points what is left of a wave that turns by `T` is as large as the Bessel function `J_2n(T / 2)`.
+const POINTS: [usize; 6] = [12, 16, 20, 24, 32, 48];
+const TURNS: [f64; 6] = [3.0, 8.0, 13.0, 18.0, 30.0, 90.0];
+/// Points of the rule for (2).
+const PLAIN: usize = 24;
 
 /// What turns over a stretch is followed by the polynomial through its targets if that is as near as this, of its amplitude.
 const FOLLOWED: f64 = 1e-12;
@@ -61,6 +66,9 @@ pub(in crate::contact_equation) struct Nodes {
     pub(in crate::contact_equation) twice: Vec<f64>,
     /// Rules between successive targets, coarser ones first.
     between: [OnceLock<Between>; POINTS.len()],
+    /// By how much a kernel that turns once over the whole stretch may turn on each way between two targets, and the most of these.
+    reaches: Vec<f64>,
+    reach: f64,
     /// The longest way between two targets.
     widest: f64,
     /// See [`Nodes::follows`].
@@ -70,12 +78,19 @@ pub(in crate::contact_equation) struct Nodes {
 /// A rule between successive targets.
 #[derive(Debug)]
 pub(in crate::contact_equation) struct Between {
-    /// Points in a way.
-    pub(in crate::contact_equation) points: usize,
+    /// Where the points of each way begin, and where all end.
+    starts: Vec<usize>,
     /// What is left to the end of the way, for every point of it.
     pub(in crate::contact_equation) left: Vec<f64>,
     /// Weight times every polynomial there.
     pub(in crate::contact_equation) weighted: Vec<f64>,
+}
+
+impl Between {
+    /// The points of a way.
+    pub(in crate::contact_equation) fn points(&self, way: usize) -> Range<usize> {
+        self.starts[way]..self.starts[way + 1]
+    }
 }
 
 impl Nodes {
@@ -130,6 +145,8 @@ impl Nodes {
             once: Vec::new(),
             twice: Vec::new(),
             between: Default::default(),
+            reaches: Vec::new(),
+            reach: 0.0,
             widest: 0.0,
             followed: OnceLock::new(),
             y,
@@ -144,14 +161,17 @@ impl Nodes {
         let mut ways = vec![self.targets[0]];
         ways.extend(self.targets.windows(2).map(|pair| pair[1] - pair[0]));
         self.widest = ways.iter().copied().fold(0.0, f64::max);
-        let rule = self.rule_between(POINTS[1]);
+        let ends = [-1.0].iter().chain(&self.y);
+        let pairs = ends.zip(self.y.iter().chain(&[1.0]));
+        self.reaches = pairs.map(|(a, b)| self.reach(*a, *b)).collect();
+        self.reach = self.reaches.iter().copied().fold(0.0, f64::max);
+        let rule = self.rule_between(|_| PLAIN);
         let (mut once, mut twice) = (vec![0.0; n], vec![0.0; n]);
         for (way, length) in ways.iter().enumerate() {
             for l in 0..n {
                 twice[l] += length * once[l];
             }
-            for point in 0..rule.points {
-                let place = way * rule.points + point;
+            for place in rule.points(way) {
                 for l in 0..n {
                     let weighted = rule.weighted[place * n + l];
                     once[l] += weighted;
@@ -163,10 +183,17 @@ impl Nodes {
         }
     }
 
-    fn rule_between(&self, points: usize) -> Between {
+    /// How far it is at most between two places in `y` at the slope that is steepest there.
+    fn reach(&self, from: f64, to: f64) -> f64 {
+        let places = [from, 0.5 * (from + to), to];
+        let slopes = places.map(|y| self.map.slope(y));
+        (to - from) * slopes.into_iter().fold(0.0, f64::max)
+    }
+
+    /// With so many points in every way.
+    fn rule_between(&self, points: impl Fn(usize) -> usize) -> Between {
         let n = self.count();
         let map = &self.map;
-        let gauss = gauss::rule(points);
         let ends: Vec<f64> = [-1.0]
             .iter()
             .chain(&self.y)
@@ -174,12 +201,13 @@ impl Nodes {
             .copied()
             .collect();
         let mut rule = Between {
-            points,
+            starts: vec![0],
             left: Vec::new(),
             weighted: Vec::new(),
         };
         let mut values = vec![0.0; n];
-        for (pair, end) in ends.windows(2).zip(&self.targets) {
+        for (way, (pair, end)) in ends.windows(2).zip(&self.targets).enumerate() {
+            let gauss = gauss::rule(points(way));
             let length = pair[1] - pair[0];
             for (s, w) in gauss.nodes.iter().zip(&gauss.weights) {
                 let y = pair[0] + length * s;
@@ -189,15 +217,18 @@ impl Nodes {
                 rule.weighted
                     .extend(values.iter().map(|value| weight * value));
             }
+            rule.starts.push(rule.left.len());
         }
         rule
     }
 
     /// The rule that serves a kernel which turns by this angle, or decays by so many powers of `e`, over a whole stretch.
     pub(in crate::contact_equation) fn between(&self, fast: f64) -> &Between {
-        let points = points_for(fast * self.widest);
-        let index = POINTS.iter().position(|of| *of == points).unwrap_or(0);
-        self.between[index].get_or_init(|| self.rule_between(POINTS[index]))
+        let index = place_for(fast * self.reach);
+        self.between[index].get_or_init(|| {
+            let part = TURNS[index] / self.reach;
+            self.rule_between(|way| POINTS[place_for(part * self.reaches[way])])
+        })
     }
 
     /// Writes every polynomial `l_l` at a `psi` of the stretch.
@@ -243,8 +274,9 @@ impl Nodes {
         }
     }
 
-    /// The last target that is not beyond a `psi`, if there is one, and a rule from there to it.
-    pub(in crate::contact_equation) fn partway(&self, psi: f64, points: usize, rule: &mut Partway) {
+    /// The last target that is not beyond a `psi`, if there is one, and a rule from there to it which serves a kernel that turns by this angle over a whole
+    /// stretch.
+    pub(in crate::contact_equation) fn partway(&self, psi: f64, fast: f64, rule: &mut Partway) {
         let n = self.count();
         let done = self.targets.partition_point(|target| *target <= psi);
         rule.done = done.checked_sub(1);
@@ -256,9 +288,10 @@ impl Nodes {
             return;
         }
         let from = rule.done.map_or(-1.0, |target| self.y[target]);
-        let length = self.map.inverse(psi) - from;
-        let gauss = gauss::rule(points);
-        rule.values.resize(points * n, 0.0);
+        let to = self.map.inverse(psi);
+        let length = to - from;
+        let gauss = gauss::rule(POINTS[place_for(fast * self.reach(from, to))]);
+        rule.values.resize(gauss.nodes.len() * n, 0.0);
         let rows = rule.values.chunks_exact_mut(n);
         for ((s, w), values) in gauss.nodes.iter().zip(&gauss.weights).zip(rows) {
             let y = from + length * s;
@@ -343,11 +376,10 @@ impl Nodes {
     }
 }
 
-/// Points that serve a kernel which turns by this angle, or decays by so many powers of `e`, between two targets.
-pub(in crate::contact_equation) fn points_for(turn: f64) -> usize {
-    let fits = |points: &usize| turn <= 0.25 * *points as f64;
-    let found = POINTS.into_iter().find(fits);
-    found.unwrap_or(POINTS[POINTS.len() - 1])
+/// The place of the rule that serves a kernel which turns by this angle, or decays by so many powers of `e`, on a way.
+fn place_for(turn: f64) -> usize {
+    let fits = |most: &f64| turn <= *most;
+    TURNS.iter().position(fits).unwrap_or(TURNS.len() - 1)
 }
 
 /// `P_n(y)` by its recurrence (Abramowitz and Stegun (1964), equation 22.7.10).

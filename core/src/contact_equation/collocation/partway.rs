@@ -46,7 +46,7 @@ impl Partway {
 
 #[cfg(test)]
 mod tests {
-    use super::super::nodes::{Nodes, points_for};
+    use super::super::nodes::Nodes;
     use super::*;
 
     /// `x'' + w^2 x = t^2` from rest is `(t^2 - 2/w^2)/w^2 + (2/w^4) cos w t`.
@@ -72,7 +72,7 @@ mod tests {
             let forces: Vec<f64> = forces.map(|psi| (psi * whole).powi(2)).collect();
             let mut rule = Partway::default();
             for psi in [0.0, 1e-4, 0.1, 0.37, 0.5, 0.93, 1.0] {
-                nodes.partway(psi, points_for(w * whole * nodes.widest()), &mut rule);
+                nodes.partway(psi, w * whole, &mut rule);
                 let known = rule
                     .done
                     .map_or([0.0; 2], |target| exact(nodes.targets[target] * whole));

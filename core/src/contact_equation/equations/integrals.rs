@@ -17,7 +17,8 @@ use std::ops::Range;
 use multiversion::multiversion;
 
 use crate::contact_equation::collocation::nodes::Nodes;
-use crate::contact_equation::linear_part::block::{Block, Kernel, add_both, times};
+use crate::contact_equation::linear_part::block::{Block, add_both, times};
+use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::values::Values;
 use crate::contact_equation::skeleton::interval::Active;
 
@@ -40,7 +41,7 @@ pub(super) struct Integrals {
     /// Directions move with the phase.
     moves: bool,
     /// Kernels at the points of the rule.
-    kernels: Vec<Kernel>,
+    kernels: Found,
     /// Sums over nodes for the states of a pair.
     sums: [Vec<f64>; 4],
     row: Vec<f64>,
@@ -73,7 +74,7 @@ impl Integrals {
             forced: std::array::from_fn(|_| vec![0.0; targets * order]),
             by_time: vec![0.0; targets * order],
             moves: false,
-            kernels: Vec::new(),
+            kernels: Found::default(),
             sums: std::array::from_fn(|_| vec![0.0; targets]),
             row: vec![0.0; order],
         }
@@ -149,10 +150,7 @@ impl Integrals {
         let once = &mut self.once[r * size..][..size];
         let twice = &mut self.twice[r * size..][..size];
         let rule = of.nodes.between(block.rate() * time.abs());
-        self.kernels.clear();
-        let left = rule.left.iter();
-        self.kernels
-            .extend(left.map(|left| block.kernel(left * time)));
+        self.kernels.find(block, &rule.left, time);
         let mut before = 0.0;
         for (way, &psi) in of.nodes.targets.iter().enumerate() {
             let step = block.kernel((psi - before) * time);
@@ -167,10 +165,11 @@ impl Integrals {
                     (once[done + l], twice[done + l]) = block.compose(step, a, b);
                 }
             }
-            let points = way * rule.points..(way + 1) * rule.points;
+            let points = rule.points(way);
             let weighted = &rule.weighted[points.start * n..points.end * n];
             let tables = [&mut once[done..to], &mut twice[done..to]];
-            add_kernels(&self.kernels[points], time, weighted, tables);
+            let kernels = [&self.kernels.c, &self.kernels.k].map(|of| &of[points.clone()]);
+            add_kernels(kernels, time, weighted, tables);
         }
     }
 
@@ -218,10 +217,10 @@ impl Integrals {
             let driven = times(block.matrix, integral);
             slope = times(e, [0, 1].map(|i| slope[i] + step * driven[i]));
             integral = times(e, integral);
-            for place in way * rule.points..(way + 1) * rule.points {
+            for place in rule.points(way) {
                 let sum = two_products(&rule.weighted[place * n..][..n], loads);
                 let left = rule.left[place] * time;
-                let carried = block.carried(self.kernels[place], sum);
+                let carried = block.carried(self.kernels.kernel(place), sum);
                 let driven = times(block.matrix, carried);
                 for i in 0..2 {
                     integral[i] += time * carried[i];
@@ -291,9 +290,10 @@ impl Integrals {
 
 /// Adds kernels times weighted polynomials.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn add_kernels(kernels: &[Kernel], time: f64, weighted: &[f64], [once, twice]: [&mut [f64]; 2]) {
-    for (kernel, weighted) in kernels.iter().zip(weighted.chunks_exact(once.len())) {
-        let [c, k] = [kernel.c * time, kernel.k * time];
+fn add_kernels([c, k]: [&[f64]; 2], time: f64, weighted: &[f64], [once, twice]: [&mut [f64]; 2]) {
+    let rows = weighted.chunks_exact(once.len());
+    for ((c, k), weighted) in c.iter().zip(k).zip(rows) {
+        let [c, k] = [c * time, k * time];
         for ((once, twice), weighted) in once.iter_mut().zip(&mut *twice).zip(weighted) {
             *once += c * weighted;
             *twice += k * weighted;

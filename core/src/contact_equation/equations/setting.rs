@@ -1,6 +1,6 @@
 //! What is the same for all orbits of a branch: the system, what is varied, and what unknowns count from.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::cancel::Cancel;
 use crate::contact_equation::linear_part::configuration::Configuration;
@@ -26,6 +26,8 @@ pub(in crate::contact_equation) struct Setting {
     pub(in crate::contact_equation) plain: bool,
     /// Operands of the laws that have pieces with kinks.
     kinked: Arc<[Option<Scales>]>,
+    /// The system at one frequency, if so.
+    known: Arc<OnceLock<Option<Values>>>,
 }
 
 impl Setting {
@@ -54,6 +56,7 @@ impl Setting {
             parameters,
             omega,
             cancel: cancel.clone(),
+            known: Arc::default(),
         }
     }
 
@@ -82,12 +85,22 @@ impl Setting {
 
     /// The system there.
     pub(in crate::contact_equation) fn values(&self, value: f64) -> Option<Values> {
+        if !self.plain {
+            return self.made(value);
+        }
+        let known = self.known.get_or_init(|| {
+            let mut values = self.made(value)?;
+            values.changes = false;
+            Some(values)
+        });
+        let mut values = known.clone()?;
+        values.set_omega(value, f64::from(self.system.facts().divisor));
+        Some(values)
+    }
+
+    fn made(&self, value: f64) -> Option<Values> {
         let (parameters, omega) = self.at(value);
-        let values = Values::new(self.system.as_ref(), &self.layout, &parameters, omega)?;
-        Some(Values {
-            changes: !self.plain,
-            ..values
-        })
+        Values::new(self.system.as_ref(), &self.layout, &parameters, omega)
     }
 
     /// The configurations of a skeleton at values; `None` where one has dependent eigenvectors.

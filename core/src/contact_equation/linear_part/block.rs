@@ -78,6 +78,11 @@ pub(in crate::contact_equation) fn times(a: Square, x: Pair) -> Pair {
     ]
 }
 
+/// The product of two matrices.
+pub(super) fn product(a: Square, b: Square) -> Square {
+    a.map(|row| row_times(row, b))
+}
+
 /// The product of two states as a row and a matrix.
 pub(in crate::contact_equation) fn row_times(x: Pair, a: Square) -> Pair {
     [

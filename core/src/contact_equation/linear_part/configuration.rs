@@ -16,10 +16,13 @@
 //! Source: Shaw and Holmes (1983), A periodically forced piecewise linear oscillator, Journal of Sound and Vibration 90(1) (motions that
 //! are known in closed form on both sides of a stop, with the times of switching as unknowns).
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::block::{Block, Pair, add};
 use super::linear::{Linear, Seen, seen};
+use super::refined::Pairs;
 use super::values::{Contact, Values, Wave};
 use crate::law::{Derivatives, On, Variation};
 use crate::system::System;
@@ -30,8 +33,9 @@ const MOST: usize = 40;
 const MOST_IF_IT_CHANGES: usize = 12;
 /// Eigenvectors nearer to dependent ones than this leave so many digits less in (2). Where they are, forces are unknown at nodes.
 const DEPENDENT: f64 = 1e3;
-/// Squares of its slowest exponents are known to rounding of those of its fastest ones, which no finer equations show: up to this quotient.
-const SPREAD: f64 = 1e4;
+/// Squares of its slowest exponents are found to rounding of those of its fastest ones, which no finer equations show: up to this quotient. A step that
+/// leaves the square of an error leaves rounding up to the second one; where an exponent is zero none is made, so that it stays that.
+const SPREAD: [f64; 2] = [1e4, 1e8];
 /// What decays faster than this in a unit of phase grows as fast where equations go back, as between switches in another order.
 const DECAYS: f64 = 100.0;
 
@@ -44,17 +48,41 @@ pub(in crate::contact_equation) struct Configuration {
     pub(in crate::contact_equation) to: DMatrix<f64>,
     /// `S^-1`
     pub(in crate::contact_equation) from: DMatrix<f64>,
+    /// Its pairs are those of [`refined`](super::refined).
+    is_refined: bool,
 }
 
+/// Configurations that were asked for, by the pieces of the contacts.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Kept(Arc<Mutex<Vec<Known>>>);
+
+type Known = (Vec<usize>, Option<Configuration>);
+
 impl Configuration {
-    /// With every contact on a piece; `None` where a force is not affine, a direction or an offset moves, or eigenvectors are dependent.
+    /// With every contact on a piece; `None` where a force is not affine, a direction or an offset moves, or eigenvectors are dependent. What is
+    /// known is kept with the values.
     pub(in crate::contact_equation) fn new(
         system: &dyn System,
         values: &Values,
         pieces: &[usize],
     ) -> Option<Self> {
+        let mut kept = values.kept.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = kept.iter().find(|(of, _)| of == pieces);
+        let known = known.map(|(_, known)| known.clone());
+        let mut of = known.unwrap_or_else(|| {
+            let made = Self::made(system, values, pieces);
+            kept.push((pieces.to_vec(), made.clone()));
+            made
+        })?;
+        of.values.set_base(values.base);
+        Some(of)
+    }
+
+    fn made(system: &dyn System, values: &Values, pieces: &[usize]) -> Option<Self> {
         let [mass, mut damping, mut stiffness] = values.matrices.clone();
         let mut load = DVector::zeros(mass.nrows());
+        let mut products = Vec::new();
+        let own = &values.linear;
         for (contact, &piece) in values.contacts.iter().zip(pieces) {
             let facts = &system.law(contact.law).facts().pieces[piece];
             if facts.force == Variation::Zero {
@@ -67,22 +95,48 @@ impl Configuration {
             stiffness += affine.by_gap * product;
             load -=
                 (affine.force - affine.by_gap * (affine.at + standing.offset)) * &standing.force;
+            let position = own.positions.tr_mul(&standing.gap);
+            let rate = own.velocities.tr_mul(&standing.gap);
+            products.push([
+                &own.input * &standing.force,
+                affine.by_gap * position + affine.by_rate * rate,
+            ]);
         }
-        let linear = Linear::new(&mass, &damping, &stiffness)?;
-        let to = &values.linear.inverse * states(&linear);
-        let from = &linear.inverse * states(&values.linear);
+        let found = Linear::new(&mass, &damping, &stiffness)?;
+        let mut pairs = Pairs {
+            to: &own.inverse * states(&found),
+            from: &found.inverse * states(own),
+            blocks: found.blocks.clone(),
+        };
+        // One pair has nothing beside it.
+        let is_refined = found.blocks.len() > 1
+            && found
+                .blocks
+                .iter()
+                .all(|block| block.squares().count() == 2);
+        let linear = if is_refined {
+            pairs = pairs.refined(&own.blocks, &products);
+            own.in_pairs(pairs.clone(), found.dependence)
+        } else {
+            found
+        };
+        let Pairs { to, from, .. } = pairs;
         let waves = waves(&values.load, &from, &(&linear.input * load));
-        let base = values.base;
-        let mut values = Values {
+        let values = Values {
             linear,
             base: 0.0,
             contacts: Vec::new(),
             load: waves,
             matrices: [mass, damping, stiffness],
             changes: values.changes,
+            kept: Kept::default(),
         };
-        values.set_base(base);
-        Some(Self { values, to, from })
+        Some(Self {
+            values,
+            to,
+            from,
+            is_refined,
+        })
     }
 
     /// Whether so many states may be followed so, where coefficients change along the branch or not.
@@ -101,7 +155,7 @@ impl Configuration {
             sizes().fold(0.0, f64::max),
             sizes().fold(f64::INFINITY, f64::min),
         ];
-        let near = blocks.len() == 1 || most <= SPREAD * least;
+        let near = blocks.len() == 1 || most <= SPREAD[usize::from(self.is_refined)] * least;
         *dependence <= DEPENDENT && near && decay <= DECAYS * self.values.base
     }
 

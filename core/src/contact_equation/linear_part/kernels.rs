@@ -36,7 +36,7 @@ pub(in crate::contact_equation) struct Kernels {
     others: Vec<usize>,
 }
 
-/// Room for one time, and what was found: `c` and `k` of every block.
+/// Room, and what was found: `c` and `k` of every block at one time, or of one block at many.
 #[derive(Debug, Clone, Default)]
 pub(in crate::contact_equation) struct Found {
     angles: Vec<f64>,
@@ -87,6 +87,28 @@ impl Kernels {
 }
 
 impl Found {
+    /// Finds those of one block at parts of a time, in the order of these.
+    pub(in crate::contact_equation) fn find(&mut self, block: &Block, parts: &[f64], time: f64) {
+        let count = parts.len().next_multiple_of(LANES);
+        for room in [&mut self.angles, &mut self.c, &mut self.k] {
+            room.resize(count, 0.0);
+        }
+        let root = block.turns();
+        if root == 0.0 {
+            for ((part, c), k) in parts.iter().zip(&mut self.c).zip(&mut self.k) {
+                let kernel = block.kernel(part * time);
+                (*c, *k) = (kernel.c, kernel.k);
+            }
+            return;
+        }
+        for (angle, part) in self.angles.iter_mut().zip(parts) {
+            *angle = root * (part * time);
+        }
+        sines_and_cosines(&self.angles, &mut self.k, &mut self.c);
+        let factors = [block.mean() / root, 1.0 / root];
+        decay_by_angle(&self.angles, factors, [&mut self.c, &mut self.k]);
+    }
+
     /// That of a block.
     pub(in crate::contact_equation) fn kernel(&self, r: usize) -> Kernel {
         Kernel {
@@ -105,17 +127,36 @@ fn decay(means: &[f64], per_root: &[f64], s: f64, [c, k]: [&mut [f64]; 2]) {
     let (k, _) = k.as_chunks_mut::<LANES>();
     for (((means, per_root), c), k) in means.iter().zip(per_root).zip(c).zip(k) {
         for j in 0..LANES {
-            let x = (means[j] * s).clamp(-FARTHEST, FARTHEST);
-            let shifted = x * std::f64::consts::LOG2_E + WHOLE;
-            let n = shifted - WHOLE;
-            let r = (x - n * LN_2[0]) - n * LN_2[1];
-            let sum = exponential(r);
-            let power = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
-            let decay = sum * power;
+            let decay = power(means[j] * s);
             c[j] *= decay;
             k[j] *= decay * per_root[j];
         }
     }
+}
+
+/// The same of one block at many angles, with its mean and one in parts of its root.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn decay_by_angle(angles: &[f64], [mean, per_root]: [f64; 2], [c, k]: [&mut [f64]; 2]) {
+    let (angles, _) = angles.as_chunks::<LANES>();
+    let (c, _) = c.as_chunks_mut::<LANES>();
+    let (k, _) = k.as_chunks_mut::<LANES>();
+    for ((angles, c), k) in angles.iter().zip(c).zip(k) {
+        for j in 0..LANES {
+            let decay = power(mean * angles[j]);
+            c[j] *= decay;
+            k[j] *= decay * per_root;
+        }
+    }
+}
+
+/// `e^x`
+#[inline(always)]
+fn power(x: f64) -> f64 {
+    let x = x.clamp(-FARTHEST, FARTHEST);
+    let shifted = x * std::f64::consts::LOG2_E + WHOLE;
+    let n = shifted - WHOLE;
+    let r = (x - n * LN_2[0]) - n * LN_2[1];
+    exponential(r) * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
 }
 
 /// `e^r` by its series.
@@ -174,6 +215,23 @@ mod tests {
                 assert!((found.c[r] - exact.c).abs() <= within, "{r} {s}");
                 let k = (found.k[r] - exact.k).abs();
                 assert!(k <= 4.0 * f64::EPSILON * exact.k.abs() || k * block.turns() <= within);
+            }
+        }
+        let parts = [0.0, 0.11, -0.3, 0.5, 1.0];
+        let mut others = Found::default();
+        for block in &blocks {
+            found.find(block, &parts, 0.7);
+            for (place, part) in parts.iter().enumerate() {
+                kernels.find(&blocks, part * 0.7, &mut others);
+                let r = blocks.iter().position(|of| of == block).unwrap();
+                let [one, all] = [found.kernel(place), others.kernel(r)];
+                let size = all.c.hypot(block.turns() * all.k);
+                let within = 4.0 * f64::EPSILON * size * (1.0 + block.rate());
+                assert!((one.c - all.c).abs() <= within, "{r} {part}");
+                assert!(
+                    (one.k - all.k).abs() * block.turns() <= within,
+                    "{r} {part}"
+                );
             }
         }
     }

@@ -15,6 +15,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::block::{Block, Pair, Square};
 use super::kernels::Kernels;
+use super::refined::Pairs;
 use crate::numeric::spectrum::{balance, eigenvalues};
 
 /// What is smaller than this part of a matrix is rounding.
@@ -84,20 +85,38 @@ impl Linear {
         c: &DMatrix<f64>,
         k: &DMatrix<f64>,
     ) -> Option<Self> {
-        let mut linear = if m.nrows() == 1 {
+        let linear = if m.nrows() == 1 {
             Self::of_one(m[(0, 0)], c[(0, 0)], k[(0, 0)])
         } else {
             Self::by_real_modes(m, c, k).or_else(|| Self::by_complex_modes(m, c, k))
         }?;
-        linear.kernels = Kernels::of(&linear.blocks);
-        let pairs = linear
-            .positions
-            .row_iter()
-            .zip(linear.velocities.row_iter());
-        linear.rows = pairs
+        Some(linear.seen())
+    }
+
+    /// The same matrix, or one that was found from this one, in other pairs, whose states are `S^-1` of these.
+    pub(super) fn in_pairs(&self, pairs: Pairs, dependence: f64) -> Self {
+        let Pairs { blocks, to, from } = pairs;
+        let linear = Self {
+            positions: &self.positions * &to,
+            velocities: &self.velocities * &to,
+            input: &from * &self.input,
+            inverse: &from * &self.inverse,
+            blocks,
+            dependence,
+            kernels: Kernels::default(),
+            rows: Vec::new(),
+        };
+        linear.seen()
+    }
+
+    /// With what follows from blocks and `T`.
+    fn seen(mut self) -> Self {
+        self.kernels = Kernels::of(&self.blocks);
+        let pairs = self.positions.row_iter().zip(self.velocities.row_iter());
+        self.rows = pairs
             .map(|(position, rate)| seen(position.iter().copied(), rate.iter().copied()))
             .collect();
-        Some(linear)
+        self
     }
 
     fn of_one(m: f64, c: f64, k: f64) -> Option<Self> {

@@ -6,6 +6,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::block::{Block, Pair, times};
+use super::configuration::Kept;
 use super::linear::{Linear, Seen, seen};
 use crate::model::layout::{ContactLayout, Layout, Term, constant};
 use crate::system::{Part, System};
@@ -64,6 +65,11 @@ impl Moving {
     /// It does not move.
     pub(in crate::contact_equation) fn is_constant(&self) -> bool {
         self.waves.is_empty()
+    }
+
+    /// What does not move of it, if that is anything.
+    pub(in crate::contact_equation) fn constant(&self) -> &[f64] {
+        &self.constant
     }
 
     /// Writes a derivative by the phase; the zeroth is the vector.
@@ -312,6 +318,8 @@ pub(in crate::contact_equation) struct Values {
     pub(in crate::contact_equation) matrices: [DMatrix<f64>; 3],
     /// More than the time changes along the branch.
     pub(in crate::contact_equation) changes: bool,
+    /// The same while contacts are closed, as far as it was asked for.
+    pub(super) kept: Kept,
 }
 
 impl Values {
@@ -340,6 +348,7 @@ impl Values {
             load,
             matrices: [mass, damping, stiffness],
             changes: true,
+            kept: Kept::default(),
         };
         values.set_omega(omega, f64::from(system.facts().divisor));
         Some(values)

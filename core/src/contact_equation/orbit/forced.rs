@@ -5,7 +5,7 @@
 //! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, equation (4.2).
 
 use super::motion::Room;
-use crate::contact_equation::collocation::nodes::{Nodes, points_for};
+use crate::contact_equation::collocation::nodes::Nodes;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::equations::pass_results::Passed;
 use crate::contact_equation::linear_part::block::{Block, Pair};
@@ -19,8 +19,8 @@ pub(super) struct Forced<'e> {
     nodes: &'static Nodes,
     /// The time of the interval.
     whole: f64,
-    /// One contact acts.
-    alone: bool,
+    /// What it does to all states where one contact acts, and the state that it moves most.
+    alone: Option<(&'e [f64], usize)>,
     /// All pairs are slow.
     slow: bool,
 }
@@ -46,11 +46,20 @@ impl<'e> Forced<'e> {
         let fastest = blocks.map(Block::rate).fold(0.0, f64::max) * whole.abs();
         let slow = nodes.follows(fastest);
         if !slow {
-            nodes.partway(psi, points_for(fastest * nodes.widest()), &mut room.partway);
+            nodes.partway(psi, fastest, &mut room.partway);
         }
         nodes.through_ends(psi, &mut room.weights);
-        let alone =
-            of.active.len() == 1 && values.contacts[of.active[0].contact].input.is_constant();
+        let alone = match &of.active[..] {
+            [active] if !slow => Some(&values.contacts[active.contact].input),
+            _ => None,
+        };
+        let alone = alone.filter(|input| input.is_constant());
+        let alone = alone.and_then(|input| {
+            let input = input.constant();
+            let size = |state: &usize| input[*state].abs();
+            let most = (0..input.len()).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+            (input[most] != 0.0).then_some((input, most))
+        });
         Self {
             linear: &values.linear,
             passed,
@@ -137,20 +146,21 @@ impl<'e> Forced<'e> {
                 room.rung[2 * r..2 * r + 2].copy_from_slice(&carried);
             }
         }
-        let shape = self.shape();
         let rows = room.partway.values.chunks_exact(n);
         for ([left, weight], row) in room.partway.points.iter().zip(rows) {
             let at = |state: usize| -> f64 {
                 let load = &self.passed.load[state * n..][..n];
                 row.iter().zip(load).map(|(l, f)| l * f).sum()
             };
-            let alone = shape.as_ref().map(|(state, _)| at(*state));
+            let alone = self
+                .alone
+                .map(|(input, most)| (input, at(most) / input[most]));
             let time = left * self.whole;
             self.linear.kernels.find(blocks, time, &mut room.kernels);
             for (r, block) in blocks.iter().enumerate() {
-                let force = match (&shape, alone) {
-                    (Some((_, shape)), Some(force)) => pair(shape, r).map(|x| x * force),
-                    _ => [at(2 * r), at(2 * r + 1)],
+                let force = match alone {
+                    Some((input, force)) => pair(input, r).map(|x| x * force),
+                    None => [at(2 * r), at(2 * r + 1)],
                 };
                 let carried = block.carried(room.kernels.kernel(r), force);
                 for i in 0..2 {
@@ -158,18 +168,5 @@ impl<'e> Forced<'e> {
                 }
             }
         }
-    }
-
-    /// Where one contact acts: a state that it moves, and what it does to all states, in parts of that.
-    fn shape(&self) -> Option<(usize, Vec<f64>)> {
-        let n = self.nodes.count();
-        let load = &self.passed.load;
-        let size = |place: &usize| load[*place].abs();
-        let largest = (0..load.len()).max_by(|a, b| size(a).total_cmp(&size(b)));
-        let largest = largest.filter(|place| self.alone && load[*place] != 0.0)?;
-        let (state, node) = (largest / n, largest % n);
-        let per = 1.0 / load[largest];
-        let shape = load.chunks_exact(n).map(|load| load[node] * per);
-        Some((state, shape.collect()))
     }
 }

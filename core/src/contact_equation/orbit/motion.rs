@@ -112,11 +112,7 @@ impl<'e> Motion<'e> {
         let passed = &passed[interval];
         let [from, to] = passed.phases;
         let time = (phase - from) / values.base;
-        let psi = if to > from {
-            (phase - from) / (to - from)
-        } else {
-            0.0
-        };
+        let psi = part([from, to], phase);
         values.write_steady(phase, &mut room.steady, None);
         let linear = &values.linear;
         linear.kernels.find(&linear.blocks, time, &mut room.kernels);
@@ -135,6 +131,21 @@ impl<'e> Motion<'e> {
             of.give(&room.states, &mut room.own);
             std::mem::swap(&mut room.states, &mut room.own);
         }
+    }
+
+    /// The phase of a node of an interval with forces, and the states that the pass has left there: behind those at the beginning.
+    pub(in crate::contact_equation) fn at_node(
+        &self,
+        interval: usize,
+        node: usize,
+    ) -> (f64, &'e [f64]) {
+        let Equations {
+            skeleton, passed, ..
+        } = self.equations;
+        let [from, to] = passed[interval].phases;
+        let psi = skeleton.intervals[interval].nodes.targets[node];
+        let states = &passed[interval].states[(node + 1) * skeleton.order..][..skeleton.order];
+        (from + psi * (to - from), states)
     }
 
     /// What has the forces of an interval, where they are affine.
@@ -167,7 +178,12 @@ impl<'e> Motion<'e> {
     }
 
     /// A position and its rate at a phase within an interval, of the pairs that a row sees: where these are few, they alone are followed.
-    pub(super) fn seen(&self, row: &[Seen], interval: usize, phase: f64) -> [f64; 2] {
+    pub(in crate::contact_equation) fn seen(
+        &self,
+        row: &[Seen],
+        interval: usize,
+        phase: f64,
+    ) -> [f64; 2] {
         let room = &mut *self.room.borrow_mut();
         let values = self.values(interval);
         let blocks = &values.linear.blocks;
@@ -179,7 +195,7 @@ impl<'e> Motion<'e> {
         let passed = &self.equations.passed[interval];
         let [from, to] = passed.phases;
         let time = (phase - from) / values.base;
-        let forced = Forced::new(self.equations, interval, (phase - from) / (to - from), room);
+        let forced = Forced::new(self.equations, interval, part([from, to], phase), room);
         let mut sums = [0.0; 2];
         for seen in row {
             let block = &blocks[seen.block];
@@ -206,7 +222,12 @@ impl<'e> Motion<'e> {
     }
 
     /// The same in these states.
-    pub(super) fn gap_of(&self, contact: usize, phase: f64, states: &[f64]) -> [f64; 2] {
+    pub(in crate::contact_equation) fn gap_of(
+        &self,
+        contact: usize,
+        phase: f64,
+        states: &[f64],
+    ) -> [f64; 2] {
         let room = &mut *self.room.borrow_mut();
         self.gap_in(contact, phase, states, &mut room.rows)
     }
@@ -243,23 +264,6 @@ impl<'e> Motion<'e> {
         linear.write_physical(&room.states, state);
     }
 
-    /// A coordinate and its velocity, within an interval.
-    pub(in crate::contact_equation) fn coordinate(
-        &self,
-        index: usize,
-        interval: usize,
-        phase: f64,
-    ) -> [f64; 2] {
-        let room = &mut *self.room.borrow_mut();
-        self.write(interval, phase, room);
-        self.coordinate_of(index, &room.states)
-    }
-
-    /// A coordinate and its velocity in these states.
-    pub(super) fn coordinate_of(&self, index: usize, states: &[f64]) -> [f64; 2] {
-        of_states(&self.equations.values.linear.rows[index], states)
-    }
-
     /// Writes the states at a phase within an interval.
     pub(in crate::contact_equation) fn states(
         &self,
@@ -291,6 +295,15 @@ impl<'e> Motion<'e> {
         let gaps = contacts.iter().map(Contact::harmonic);
         let moving = gaps.fold(0.0, f64::max);
         (moving + waves.fold(1.0, f64::max)) / std::f64::consts::TAU
+    }
+}
+
+/// What part of an interval is behind at a phase.
+fn part([from, to]: [f64; 2], phase: f64) -> f64 {
+    if to > from {
+        (phase - from) / (to - from)
+    } else {
+        0.0
     }
 }
 

@@ -20,6 +20,7 @@ use super::content::{Content, Fast, Ripples, unless_rounding};
 use super::extremes::Sampled;
 use super::motion::Motion;
 use super::sums::Exponential;
+use crate::contact_equation::collocation::nodes::Nodes;
 use crate::contact_equation::linear_part::block::{Pair, times};
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::linear::{Seen, of_states, seen};
@@ -350,6 +351,18 @@ impl<'m, 'e> Signal<'m, 'e> {
         !self.motion.equations.passed[self.interval]
             .forced
             .is_empty()
+    }
+
+    /// The nodes of these.
+    pub(super) fn nodes(&self) -> Option<&'static Nodes> {
+        let of = &self.motion.equations.skeleton.intervals[self.interval];
+        self.is_forced().then_some(of.nodes)
+    }
+
+    /// Value and rate at one of these, where the pass has left the states.
+    pub(super) fn at_node(&self, node: usize) -> Look {
+        let (phase, states) = self.motion.at_node(self.interval, node);
+        self.of_states(phase, states)
     }
 
     /// What rings too fast for samples that are so far apart, while the interval lasts.

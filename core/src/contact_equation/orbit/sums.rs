@@ -7,11 +7,16 @@
 //! int x^2 dt = Re sum_ab z_a (z_b I(m_a + m_b) + conj(z_b) I(m_a + conj(m_b))) / 2                              (1)
 //! ```
 //!
-//! With these, a Gauss rule of eight nodes on a part of `s`, with the phase as `s^2 (3 - 2 s)`, is compared with the same rule on its halves, which are taken where
+//! With these, states are known at the nodes of a Gauss rule, whose weights are the last row of (2) in [`nodes`](crate::contact_equation::collocation::nodes). It
+//! serves where the last coefficients of the signal in Legendre polynomials are below `1e-8` of its largest value; or below `1e-6` where nothing turns by more
+//! radians than half of the nodes, so that what follows is ever smaller. The rule leaves out products of two such.
+//!
+//! Elsewhere a Gauss rule of eight nodes on a part of `s`, with the phase as `s^2 (3 - 2 s)`, is compared with the same rule on its halves, which are taken where
 //! both agree to `1e-9` of the largest value, and halved again where they do not: until the parts are as short as half of a period of what rings by more than
 //! `1e-6` of the signal. What rings by less is noise in the rules, which have hundreds of nodes then: of a mean it leaves some hundredth of that.
 //!
-//! Source: Davis and Rabinowitz (1984), Methods of Numerical Integration, section 6.2 (automatic integration); for (1), elementary.
+//! Source: Davis and Rabinowitz (1984), Methods of Numerical Integration, section 6.2 (automatic integration); Trefethen (2013), Approximation Theory and
+//! Approximation Practice, chapter 19 (what Gauss rules leave out); for (1), elementary.
 
 use nalgebra::Complex;
 
@@ -24,6 +29,9 @@ const NODES: usize = 8;
 const AGREE: f64 = 1e-9;
 /// What rings by less than this part of a signal is left to the rules.
 const RINGS: f64 = 1e-6;
+/// Last coefficients of a signal, in parts of its largest value, with which the rule of the nodes serves, and where all that it has turns slowly.
+const TAIL: f64 = 1e-8;
+const SLOW_TAIL: f64 = 1e-6;
 /// Parts of an interval in which every rule is halved once more, at most to the power of two.
 const LEAST: usize = 3;
 const MOST: usize = 14;
@@ -45,7 +53,31 @@ pub(super) fn integrals_of(signal: &mut Signal<'_, '_>) -> [f64; 2] {
         return of_exponentials(&of, (to - from) / base).map(|sum| sum * base);
     }
     let phases = signal.phases();
-    by_rules(signal, phases)
+    by_nodes(signal, phases).unwrap_or_else(|| by_rules(signal, phases))
+}
+
+/// By the values at the nodes of the forces, where these resolve the signal.
+fn by_nodes(signal: &Signal<'_, '_>, [begin, end]: [f64; 2]) -> Option<[f64; 2]> {
+    let nodes = signal.nodes()?;
+    let n = nodes.count();
+    let values: Vec<f64> = (0..n).map(|node| signal.at_node(node).value).collect();
+    let largest = values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let turns = signal.turns_above(0.0) * (end - begin);
+    let tail = if turns <= 0.5 * n as f64 {
+        SLOW_TAIL
+    } else {
+        TAIL
+    };
+    if nodes.tail(&values) > tail * largest {
+        return None;
+    }
+    let mut sums = [0.0; 2];
+    for (x, weight) in values.iter().zip(&nodes.once[n * n..]) {
+        let weight = weight * (end - begin);
+        sums[0] += weight * x;
+        sums[1] += weight * x * x;
+    }
+    Some(sums)
 }
 
 /// (1), over a time.

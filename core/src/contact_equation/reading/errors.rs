@@ -211,7 +211,8 @@ fn apart(finer: &Equations, extremes: &[[Place; 2]], accuracy: Accuracy) -> f64 
         if comes_back {
             // One coordinate of many.
             let (interval, phase) = motion.interval(place.x);
-            return motion.coordinate(coordinate, interval, phase)[0] - place.value;
+            let row = &finer.values.linear.rows[coordinate];
+            return motion.seen(row, interval, phase)[0] - place.value;
         }
         motion.at(place.x, &mut state);
         state[coordinate] - place.value

@@ -88,10 +88,9 @@ impl Run<'_> {
                 };
                 let of = &self.equations.values.contacts[active.contact];
                 gaps.clear();
-                let nodes = &interval.nodes.targets[..interval.nodes.count()];
-                gaps.extend(nodes.iter().map(|psi| {
-                    let phase = from + psi * (to - from);
-                    motion.gap(active.contact, index, phase)[0]
+                gaps.extend((0..interval.nodes.count()).map(|node| {
+                    let (phase, states) = motion.at_node(index, node);
+                    motion.gap_of(active.contact, phase, states)[0]
                 }));
                 let places = sharp.places([&of.arguments, &of.levels], &gaps);
                 for pair in gaps.windows(2) {

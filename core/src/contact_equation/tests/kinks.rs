@@ -1,10 +1,9 @@
 //! Forces whose slopes jump where a rate is zero: orbits, errors and events against shooting, which ends steps there.
 
-use super::{Branch, FrequencyResponse, events_agree};
+use super::events_agree;
 use crate::numeric::spectrum::distance;
-use crate::response::Stop;
 use crate::system::System;
-use crate::{ContactEquation, Shooting};
+use crate::{Branch, ContactEquation, FrequencyResponse, Shooting, Stop};
 
 crate::oscillator! {
     /// A contact with damping that does not pull, and a damper in one direction.
@@ -46,11 +45,19 @@ fn errors_hold(system: &dyn System, range: [f64; 2], tolerance: f64) -> Branch {
         let error = (point.peak_to_peak() / there.peak_to_peak() - 1.0).abs();
         let stated = point.error.unwrap();
         assert!(stated < 2.0 * tolerance, "{}: {stated:e}", point.value);
-        assert!(error < stated + 1e-13, "{}: {error:e} {stated:e}", point.value);
+        assert!(
+            error < stated + 1e-13,
+            "{}: {error:e} {stated:e}",
+            point.value
+        );
         let [own, there] = [point, &there].map(|point| &point.stability.multipliers);
         let apart = distance(own, there);
         let stated = point.stability.error;
-        assert!(apart < stated + 1e-12, "{}: {apart:e} {stated:e}", point.value);
+        assert!(
+            apart < stated + 1e-12,
+            "{}: {apart:e} {stated:e}",
+            point.value
+        );
     }
     branch
 }

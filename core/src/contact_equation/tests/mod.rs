@@ -4,6 +4,7 @@ mod affine;
 mod both_sides;
 mod grazings;
 mod jumps;
+mod kinks;
 mod minimal_period;
 mod modes;
 mod moving_stiffness;

@@ -123,3 +123,32 @@ fn options_that_cannot_be_are_refused() {
         assert_eq!(error.kind(), hertzian::error::ErrorKind::Request, "{error}");
     }
 }
+
+hertzian::oscillator! {
+    /// A mass in one of two wells.
+    Wells(x) {
+        ddot(x) + 0.2*dot(x) - x + x^3 = 0.05*cos(omega*t);
+    }
+}
+
+/// One motion settles in one of the wells. The orbit in the other one is its image: `-x(t + T/2)`.
+#[test]
+fn images_of_what_one_motion_settles_to_are_covered_too() {
+    let request = Bifurcations::of(&Wells {}).from(1.1).to(1.2).depth(0);
+    let settling = Settling::new().values(1).starts(1);
+    let diagram = request.by(Shooting::new()).cover(settling).run();
+    let diagram = diagram.expect("branches");
+    let searched = &diagram.searched[0];
+    assert_eq!(searched.fates.len(), 2);
+    let orbits = searched.orbits.iter().map(|orbit| {
+        let branch = &diagram.branches[orbit.branch.expect("a branch")].branch;
+        branch.at(searched.value).expect("orbits").remove(0)
+    });
+    let ends: Vec<[f64; 2]> = orbits
+        .map(|point| point.observed.motions[0])
+        .map(|motion| [motion.minimum, motion.maximum])
+        .collect();
+    assert_eq!(ends.len(), 2);
+    assert!((ends[0][0] + ends[1][1]).abs() < 1e-9 && (ends[0][1] + ends[1][0]).abs() < 1e-9);
+    assert!(ends[0][0] * ends[0][1] > 0.0, "{ends:?}");
+}
