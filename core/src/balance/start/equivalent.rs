@@ -43,8 +43,9 @@ pub(super) fn equivalent_linearisation(
     found
 }
 
-/// Whether two solutions are one.
+/// Whether two solutions are one, whatever their parameter, the last entry, is measured in.
 fn is_same(a: &[f64], b: &[f64]) -> bool {
+    let [a, b] = [a, b].map(|u| &u[..u.len() - 1]);
     let size = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let mut pairs = a.iter().zip(b);
     pairs.all(|(x, y)| (x - y).abs() <= SAME * size)

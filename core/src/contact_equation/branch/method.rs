@@ -303,6 +303,27 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         Read::Kept
     }
 
+    /// A point of the branch in the equations that the walk goes on with, if it has a place there.
+    fn point_in(&mut self, of: &CurvePoint, next: &Next) -> Option<CurvePoint> {
+        if of.parameter() >= NOWHERE {
+            return None;
+        }
+        let Next {
+            equations, u, same, ..
+        } = next;
+        let found = if *same {
+            CurvePoint {
+                u: self.run.equations.rearranged(equations, &of.u),
+                tangent: self.run.equations.rearranged(equations, &of.tangent),
+                scale: of.scale,
+            }
+        } else {
+            self.run.point_in(of, equations, u)?
+        };
+        let mut numbers = found.u.iter().chain(&found.tangent);
+        numbers.all(|x| x.is_finite()).then_some(found)
+    }
+
     fn keep_point(&mut self, at: &CurvePoint, read: ReadOrbit) -> bool {
         let ReadOrbit { point, map, .. } = read;
         let tests = Tests::of(map.as_ref(), divisor(at));
@@ -515,16 +536,10 @@ impl BranchProblem for ContactBranch<'_, '_> {
     }
 
     fn remap(&mut self, halted: &mut Halted) {
-        let Some(Next {
-            equations,
-            u,
-            resolution,
-            same,
-        }) = self.next.take()
-        else {
+        let Some(next) = self.next.take() else {
             return;
         };
-        let length = u.len();
+        let length = next.u.len();
         let nowhere = |scale| {
             let mut u = vec![0.0; length];
             u[length - 1] = NOWHERE;
@@ -534,43 +549,31 @@ impl BranchProblem for ContactBranch<'_, '_> {
                 scale,
             }
         };
-        let is_finite = |point: &CurvePoint| {
-            let mut numbers = point.u.iter().chain(&point.tangent);
-            numbers.all(|x| x.is_finite())
-        };
-        let mut point = |of: &CurvePoint| {
-            if of.parameter() >= NOWHERE {
-                return None;
-            }
-            if same {
-                return Some(CurvePoint {
-                    u: self.run.equations.rearranged(&equations, &of.u),
-                    tangent: self.run.equations.rearranged(&equations, &of.tangent),
-                    scale: of.scale,
-                });
-            }
-            let found = self.run.point_in(of, &equations, &u);
-            found.filter(is_finite)
-        };
+        let mut point = |of: &CurvePoint| self.point_in(of, &next);
         if let Some(known) = point(&halted.point) {
             halted.point.tangent = known.tangent;
         } else {
             halted.point.tangent = vec![0.0; length];
         }
-        halted.point.u.clone_from(&u);
+        halted.point.u.clone_from(&next.u);
         halted.previous = halted.previous.as_ref().and_then(&mut point);
         if let Some(previous) = &halted.previous {
-            look_ahead(&mut halted.point, previous, &equations);
+            look_ahead(&mut halted.point, previous, &next.equations);
         }
-        let kept = match &halted.previous {
-            _ if self.refused == 0 => u.clone(),
+        // A curve is not closed where its first point has no place.
+        halted.first = point(&halted.first).unwrap_or_else(|| nowhere(halted.first.scale));
+        self.kept = match &halted.previous {
+            _ if self.refused == 0 => next.u.clone(),
             Some(previous) => previous.u.clone(),
             None => Vec::new(),
         };
-        self.kept = kept;
-        // A curve is not closed where its first point has no place.
-        halted.first = point(&halted.first).unwrap_or_else(|| nowhere(halted.first.scale));
         halted.before = None;
+        let Next {
+            equations,
+            u,
+            resolution,
+            ..
+        } = next;
         let former = std::mem::replace(&mut self.run.resolution, resolution);
         let known = std::mem::replace(&mut self.run.equations, equations);
         self.run.equations.known = [u, Vec::new()];

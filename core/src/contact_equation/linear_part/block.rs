@@ -525,13 +525,12 @@ mod tests {
                     "{c} {k} {frequency}: {found} {expected}"
                 );
             }
-            // Under a constant load the slow one is all there is, from 0 on: s / c but for what k takes.
-            let [_, r, ..] = block.response_at_rest(0.0, 2.0);
-            let exact = 2.0 / c * (1.0 - k / c) - 1.0 / (c * c);
-            assert!(
-                (r.re - exact).abs() <= 2.0 * (k * k + 1.0) / c.powi(3) + 1e-15 * exact,
-                "{c} {k}"
-            );
+            // Under a constant load: integrals of both exponentials.
+            let s = 2.1;
+            let [_, r, ..] = block.response_at_rest(0.0, s);
+            let integral = |e: f64| if e == 0.0 { s } else { (e * s).exp_m1() / e };
+            let exact = (integral(near) - integral(far)) / (near - far);
+            assert!((r.re - exact).abs() <= 1e-13 * exact, "{c} {k}");
         }
     }
 

@@ -232,6 +232,18 @@ fn solved(system: &dyn System, omega: f64, nodes: usize) -> (Equations, Vec<f64>
         damped: false,
     };
     solve::at_value(&mut equations, &mut newton, &mut u, options).unwrap();
+    // Kinks are those of the guess at first.
+    for _ in 0..3 {
+        equations.compute(&u, false);
+        if !equations.has_kinks() {
+            break;
+        }
+        let mut other = equations.at_kinks(&u).unwrap();
+        u = equations.rearranged(&other, &u);
+        newton = Newton::new(&other);
+        solve::at_value(&mut other, &mut newton, &mut u, options).unwrap();
+        equations = other;
+    }
     (equations, u)
 }
 
