@@ -16,6 +16,8 @@ use crate::time::{FlowError, Stretch};
 /// Samples of a stretch are at most so far apart in phase, and there are at least so many steps between them.
 const APART: f64 = 0.1;
 const FEWEST: usize = 4;
+/// Rounding of the phases of switches that are at one phase.
+const AT_ONCE: f64 = 1e-12;
 /// A switch is looked at this part of its arc before it is passed, where the state surely belongs to the arc.
 const BEFORE: f64 = 1e-10;
 
@@ -144,7 +146,8 @@ impl Scan {
         room: &mut Room,
     ) {
         let (from, to) = stretch.phases();
-        if from >= to {
+        // Gaps that switch so near each other switch at once.
+        if to - from <= AT_ONCE * to.abs().max(1.0) {
             return;
         }
         let middle = 0.5 * (from + to);
