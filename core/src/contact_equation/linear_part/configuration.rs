@@ -109,14 +109,17 @@ impl Configuration {
             blocks: found.blocks.clone(),
         };
         // One pair has nothing beside it.
-        let is_refined = found.blocks.len() > 1
+        let may_be = found.blocks.len() > 1
             && found
                 .blocks
                 .iter()
                 .all(|block| block.squares().count() == 2);
-        let linear = if is_refined {
-            pairs = pairs.refined(&own.blocks, &products);
-            own.in_pairs(pairs.clone(), found.dependence)
+        let refined = may_be.then(|| pairs.refined(&own.blocks, &products));
+        let refined = refined.flatten();
+        let is_refined = refined.is_some();
+        let linear = if let Some(refined) = refined {
+            pairs = refined;
+            own.in_pairs(pairs.clone(), own.dependence.max(found.dependence))
         } else {
             found
         };

@@ -24,6 +24,10 @@ use super::block::{Block, Square, product, row_times, times};
 /// Exponents nearer to each other than this part of them are not told apart: what is between them stays as it is.
 const NEAR: f64 = 1e-9;
 
+/// Steps, at most, and what the last one may turn by: its square is rounding.
+const STEPS: usize = 5;
+const TURNED: f64 = 1e-7;
+
 /// Pairs of states: blocks, `S` and `S^-1`.
 #[derive(Debug, Clone)]
 pub(super) struct Pairs {
@@ -33,8 +37,22 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// One step of (2), where the matrix is those blocks less products of a column and a row.
-    pub(super) fn refined(&self, own: &[Block], products: &[[DVector<f64>; 2]]) -> Self {
+    /// Steps of (2), where the matrix is those blocks less products of a column and a row, until one turns nothing whose square is more than
+    /// rounding: nearly equal pairs of slow states are mixed at first. `None` where none does.
+    pub(super) fn refined(&self, own: &[Block], products: &[[DVector<f64>; 2]]) -> Option<Self> {
+        let mut found = self.clone();
+        for _ in 0..STEPS {
+            let (next, turned) = found.step(own, products);
+            found = next;
+            if turned <= TURNED {
+                return Some(found);
+            }
+        }
+        None
+    }
+
+    /// One step of (2), and the largest entry that it turns by.
+    fn step(&self, own: &[Block], products: &[[DVector<f64>; 2]]) -> (Self, f64) {
         let error = &self.from * self.left(own, products);
         let blocks = self.blocks.iter().enumerate();
         let blocks = blocks.map(|(i, block)| Block::new(sum(block.matrix, entries(&error, i, i))));
@@ -42,11 +60,12 @@ impl Pairs {
         let to = &self.to + &self.to * &turn;
         let from = &self.from - &turn * &self.from;
         let rest = DMatrix::identity(to.nrows(), to.nrows()) - &to * &from;
-        Self {
+        let found = Self {
             blocks: blocks.collect(),
             from: &from + &from * rest,
             to,
-        }
+        };
+        (found, turn.amax())
     }
 
     /// `G S - S L`
@@ -157,7 +176,7 @@ mod tests {
         };
         let input = &plain.input * DVector::from_fn(n, |r, _| sign(r));
         let seen = plain.positions.transpose() * DVector::from_fn(n, |r, _| stiff * sign(r));
-        let found = known.refined(&plain.blocks, &[[input, seen]]);
+        let found = known.refined(&plain.blocks, &[[input, seen]]).unwrap();
         let missed = |block: &Block| {
             let square =
                 block.matrix[0][0] * block.matrix[1][1] - block.matrix[0][1] * block.matrix[1][0];

@@ -16,6 +16,7 @@
 
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::ops::Range;
 
 use super::content::Content;
 use super::motion::Motion;
@@ -123,12 +124,20 @@ pub(in crate::contact_equation) fn read(
     }
 }
 
-/// Where a coordinate is smallest and largest, until the orbit comes back.
+/// Where coordinates are smallest and largest, over the whole period. Where an orbit comes back with coordinates in each other's place, the extremes
+/// of all are looked for.
 pub(in crate::contact_equation) fn extremes_of(
     motion: &Motion<'_>,
-    coordinate: usize,
-) -> [Place; 2] {
-    farthest(motion, motion.sampled(), Of::Coordinate(coordinate))
+    asked: Range<usize>,
+) -> Vec<[Place; 2]> {
+    let sampled = motion.sampled();
+    let of = |coordinate| farthest(motion, sampled, Of::Coordinate(coordinate));
+    if motion.equations.skeleton.recurrence().image.is_identity() {
+        return asked.map(of).collect();
+    }
+    let coordinates = 0..motion.equations.values.linear.rows.len();
+    let all: Vec<[Place; 2]> = coordinates.map(of).collect();
+    of_period(motion, &all).drain(asked).collect()
 }
 
 /// The smallest and the largest value of a signal.

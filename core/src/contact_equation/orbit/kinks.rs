@@ -32,6 +32,8 @@ const SAMPLES: f64 = 200.0;
 const LEAST: f64 = 24.0;
 /// Accuracy of its part of the way: by (1) far more than enough.
 const CLOSE: f64 = 1e-10;
+/// Samples from one kink to the next, at least on the mean.
+const FAR: usize = 6;
 /// Operands smaller than this part of their largest value on a way are rounding.
 const NOISE: f64 = 1e-9;
 
@@ -131,19 +133,19 @@ pub(in crate::contact_equation) fn kinks(
             continue;
         }
         let mut parts = Vec::new();
+        let samples = (SAMPLES * (end - begin) / TAU).max(LEAST) as usize;
         for active in &interval.active {
             let contact = &gaps.values.contacts[active.contact];
             let Some(scales) = setting.kinked(contact.law, active.piece) else {
                 continue;
             };
             let gap = |part: f64| gaps.gap(active.contact, begin + part * (end - begin));
-            let samples = (SAMPLES * (end - begin) / TAU).max(LEAST) as usize;
             add(scales, contact, active.piece, samples, gap, &mut parts);
         }
         parts.sort_by(f64::total_cmp);
         parts.dedup_by(|next, kept| *next - *kept < EDGE);
-        // So many are the rounding of an operand that rests.
-        if parts.len() > MOST {
+        // So many are the rounding of an operand that rests, which changes its sign from one sample to the next.
+        if parts.len() > MOST.min(samples / FAR) {
             continue;
         }
         found.extend(parts.into_iter().map(|part| Kink { after, part }));

@@ -169,18 +169,15 @@ impl Run<'_> {
         let Some(found) = self.equations.extremes.get() else {
             return 0.0;
         };
-        let comes_back = finer.skeleton.recurrence().image.is_identity();
         let asked = match self.accuracy() {
             Accuracy::Coordinate(one) => one..one + 1,
-            Accuracy::Coordinates if comes_back => 0..found.coordinates.len(),
-            Accuracy::Coordinates | Accuracy::Output(_) => return 0.0,
+            Accuracy::Coordinates => 0..found.coordinates.len(),
+            Accuracy::Output(_) => return 0.0,
         };
-        let motion = Motion::of(finer);
-        let extent = |[low, high]: [Place; 2]| high.value - low.value;
-        let apart = asked.filter_map(|coordinate| {
-            let own = found.coordinates.get(coordinate)?;
-            Some(extent(extremes_of(&motion, coordinate)) - extent(*own))
-        });
+        let others = extremes_of(&Motion::of(finer), asked.clone());
+        let extent = |[low, high]: &[Place; 2]| high.value - low.value;
+        let own = asked.filter_map(|coordinate| found.coordinates.get(coordinate));
+        let apart = own.zip(&others).map(|(a, b)| extent(b) - extent(a));
         apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
     }
 

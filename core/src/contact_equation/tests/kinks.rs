@@ -94,3 +94,24 @@ fn a_rate_that_is_zero_but_for_rounding_has_no_kinks() {
         assert!(stated < 1e-6 && error < stated + 1e-13, "{}", point.value);
     }
 }
+
+crate::oscillator! {
+    /// Two equal stops and a drag on both sides: `-x(t + T/2)` is a motion, too.
+    Even(x) {
+        law drag(gap) { 0.1*abs(dot(gap))*dot(gap) }
+        law stop(gap) { gap > 0.5 => 3*(gap - 0.5)^1.5, -0.5 <= gap <= 0.5 => 0, gap < -0.5 => -(3*(-gap - 0.5)^1.5) }
+        ddot(x) + 0.05*dot(x) + x + drag(x) + stop(x) = 0.5*cos(omega*t);
+    }
+}
+
+/// An orbit that comes back mirrored after half of a period has one extreme in that half: its error is of both.
+#[test]
+fn errors_of_mirrored_orbits_beside_kinks_hold() {
+    errors_hold(&Even {}, [0.9, 1.5], 1e-6);
+    let request = FrequencyResponse::of(&Even {}).from(0.9).to(1.5);
+    let branch = request.accuracy_of("x").by(ContactEquation::new());
+    let branch = branch.run().unwrap();
+    assert!(branch.points.len() < 150);
+    let mut errors = branch.points.iter().map(|point| point.error.unwrap());
+    assert!(errors.all(|error| error < 1e-6));
+}
