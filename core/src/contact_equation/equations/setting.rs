@@ -12,6 +12,9 @@ use crate::laws::generic::scales::Scales;
 use crate::model::layout::Layout;
 use crate::system::{System, Variable};
 
+/// Frequencies at which coefficients are compared, in parts of the one where they are known.
+const OTHERS: [f64; 2] = [0.618, 1.414];
+
 /// What is the same for all orbits of a branch.
 #[derive(Clone)]
 pub(in crate::contact_equation) struct Setting {
@@ -42,6 +45,13 @@ impl Setting {
         let system = as_contacts(system, &mut layout);
         let mut by = vec![0.0; layout.coefficients];
         system.coefficients_by(Variable::Omega, &parameters, omega, &mut by);
+        let at = |omega: f64| {
+            let mut coefficients = vec![0.0; layout.coefficients];
+            system.coefficients(&parameters, omega, &mut coefficients);
+            coefficients
+        };
+        // One may be flat at this frequency alone.
+        let same = OTHERS.iter().all(|part| at(part * omega) == at(omega));
         let kinked = (0..system.facts().laws).map(|law| {
             let law = system.law(law);
             let pieces = law.facts().pieces.len();
@@ -52,7 +62,7 @@ impl Setting {
             system,
             layout: Arc::new(layout),
             variable,
-            plain: variable == Variable::Omega && by.iter().all(|x| *x == 0.0),
+            plain: variable == Variable::Omega && same && by.iter().all(|x| *x == 0.0),
             parameters,
             omega,
             cancel: cancel.clone(),
@@ -129,4 +139,24 @@ pub(in crate::contact_equation) struct Frame {
     pub(in crate::contact_equation) reference: Vec<f64>,
     pub(in crate::contact_equation) size: f64,
     pub(in crate::contact_equation) resolution: Resolution,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    crate::oscillator! {
+        /// A spring that is softest at the frequency one.
+        Flat(x) {
+            law stop(gap) { gap > 0 => 2*gap, else => 0 }
+            ddot(x) + 0.1*dot(x) + (1 + (omega - 1)^2)*x + stop(x - 0.3) = cos(omega*t);
+        }
+    }
+
+    #[test]
+    fn a_coefficient_that_is_flat_at_one_frequency_changes() {
+        let system = Flat {}.shared();
+        let setting = Setting::new(&system, Variable::Omega, vec![], 1.0, &Cancel::new());
+        assert!(!setting.plain);
+    }
 }
