@@ -223,13 +223,13 @@ pub struct PyOrigin(Origin);
 
 #[pymethods]
 impl PyOrigin {
-    /// ``"first"``, ``"event"``, ``"other-end"`` or ``"attractor"``: str.
+    /// ``"first"``, ``"event"``, ``"other-end"``, ``"attractor"`` or ``"solved"``: str.
     #[getter]
     fn kind(&self) -> PyResult<String> {
         Ok(variant(&self.0)?.0)
     }
 
-    /// Of an event ``branch``, ``event`` and ``side``, of an attractor the ``value``: dict.
+    /// Of an event ``branch``, ``event`` and ``side``, of an attractor or a solved orbit the ``value``: dict.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         object(py, &variant(&self.0)?.1)
@@ -241,7 +241,9 @@ impl PyOrigin {
             Origin::Event { branch, event, .. } => {
                 format!("<Origin: event {event} of branch {branch}>")
             }
-            Origin::Attractor { value } => format!("<Origin: attractor at {value}>"),
+            Origin::Attractor { value } | Origin::Solved { value } => {
+                format!("<Origin: {kind} at {value}>")
+            }
             _ => format!("<Origin: {kind}>"),
         })
     }

@@ -334,7 +334,7 @@ impl Found {
 pub fn describe(text: &mut String, number: usize, branch: &DiagramBranch) -> fmt::Result {
     let from = match branch.origin {
         Origin::Event { branch, .. } => format!(", from branch {}", branch + 1),
-        Origin::Attractor { value } => {
+        Origin::Attractor { value } | Origin::Solved { value } => {
             format!(", found at {}", of_varied(&branch.branch, value))
         }
         Origin::OtherEnd => ", from the other end".to_owned(),

@@ -4,14 +4,15 @@
 //! is followed, and at values where there is no stable orbit yet, or where the request says, motions from several initial states are
 //! followed until they have settled. Every orbit that they settle to lies on a branch that is known, or is where another one is begun.
 //!
-//! Initial states are the state of the nearest orbit that is known, as where a response jumps; rest at the origin; and then points of
-//! the additive sequence of Roberts (2018), which fills a box evenly, in boxes of three sizes around the orbits that are known. Last come
-//! the images, under the symmetries of the system, of the orbits that were found.
+//! Initial states are the state of the nearest orbit that is known, as where a response jumps; rest at the origin; and then states from boxes
+//! around the orbits that are known, see `starts.rs`. Last come the images, under the symmetries of the system, of the orbits that were found.
+//! Where values were asked for, orbits that no motion was seen to settle to are looked for in the end, see `scatter.rs`.
 
 use std::ops::ControlFlow;
 
 use super::diagram::{Diagram, Origin, Reason, Search};
 use super::settle::{Images, Motions, Patience};
+use super::starts::{self, Reach, Starts};
 use super::stretches::{Lacking, without};
 use crate::attractors::basin::Fate;
 use crate::branches::point::Point;
@@ -23,9 +24,9 @@ use crate::model::validate;
 use crate::response::{FrequencyResponse, OrbitMethod};
 use crate::shooting::{Asked, Shooting};
 use crate::system::Variable;
-use crate::time;
 use crate::time::centred::{centre, centred};
 use crate::time::stroboscope::Stroboscope;
+use crate::time::{self, FlowError};
 
 /// Values that are chosen where something is lacking, at most.
 const CHOSEN: usize = 8;
@@ -38,26 +39,22 @@ const TOLERANCE: f64 = 1e-8;
 /// Multiplications that one motion may take, and those of the force of a contact at one instant.
 const MULTIPLICATIONS: usize = 400_000_000;
 const PER_CONTACT: usize = 64;
-/// Sizes of the boxes of initial states, where one is that of the orbits that are known.
-const BOXES: [f64; 3] = [1.0, 0.4, 3.0];
-/// The same where all solutions are asked for: beside a small response that nothing leads away from there may be a large one.
-const WIDE: [f64; 4] = [1.0, 0.4, 3.0, 6.0];
-/// A coordinate counts as large as this part of the largest one, at least.
-const LEAST: f64 = 1e-3;
 /// Periods from rest that tell a size where no orbit is known.
 const FIRST_PERIODS: usize = 50;
 
 /// How a range is searched for what motions settle to; see [`Bifurcations::cover`](super::Bifurcations::cover).
 ///
 /// By default 4 motions are followed at each value, for 500 periods, and values are only chosen where a search finds no stable orbit.
+/// Around values that are asked for orbits are also solved for, stable or not, from as many states at each: what lies on no known branch begins one,
+/// of [`Origin::Solved`]. That goes on until nothing new is found and no branch was met once only, eight times at most.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Settling {
-    values: usize,
-    starts: usize,
-    longest: usize,
-    patience: usize,
+    pub(super) values: usize,
+    pub(super) starts: usize,
+    pub(super) longest: usize,
+    pub(super) patience: usize,
     /// Whether initial states are of all sizes.
-    wide: bool,
+    pub(super) wide: bool,
 }
 
 impl Default for Settling {
@@ -187,10 +184,11 @@ impl<M: OrbitMethod> Search<'_, M> {
         }
         for _ in 0..CHOSEN {
             let Some(value) = self.lacking() else {
-                return;
+                break;
             };
             self.settle(value, settling);
         }
+        self.scatter(settling, at);
     }
 
     /// Takes in the branch from the other end, unless it is known.
@@ -248,7 +246,7 @@ impl<M: OrbitMethod> Search<'_, M> {
         };
         let mut orbits = Vec::new();
         for orbit in &found {
-            let branch = match self.add_attractor(value, orbit) {
+            let branch = match self.add_orbit(Origin::Attractor { value }, value, orbit) {
                 Ok(number) => Some(number),
                 Err(reason) => {
                     self.diagram.missed.push((value, reason));
@@ -273,20 +271,24 @@ impl<M: OrbitMethod> Search<'_, M> {
     /// # Errors
     /// If no motion can be computed there.
     fn settled(&mut self, value: f64, settling: &Settling) -> Result<Settled, Error> {
-        let map = self.map(value)?;
-        let starts = self.starts(value, map, settling)?;
+        let (starts, map) = self.starts(value, settling.wide)?;
         let facts = self.response.request.system.facts();
-        let order = starts.units.len();
+        let order = map.order();
         let forces = MULTIPLICATIONS / (PER_CONTACT * facts.contacts.len() + order * order);
         let patience = Patience {
             longest: settling.longest,
             periods: settling.patience,
             forces,
         };
-        let mut motions = Motions::new(starts.map, starts.units, patience);
+        let first = self.first_states(value);
+        let others = self.drawn..;
+        let others = others.map(|index| starts.draw(index).0);
+        let states: Vec<_> = first.chain(others).take(settling.starts).collect();
+        self.drawn += settling.starts;
+        let mut motions = Motions::new(map, starts.units, patience);
         let symmetries = self.symmetries(value);
-        let total = starts.states.len();
-        let mut starts = starts.states.into_iter();
+        let total = states.len();
+        let mut starts = states.into_iter();
         let mut images = Images::default();
         let mut fates = Vec::new();
         while let Some(start) = starts
@@ -337,7 +339,7 @@ impl<M: OrbitMethod> Search<'_, M> {
     }
 
     /// Whether an orbit that is shifted along what does not hold it is another one that a motion may settle to.
-    fn drifts(&self, value: f64) -> bool {
+    pub(super) fn drifts(&self, value: f64) -> bool {
         let system = &self.response.request.system;
         let centred = || {
             let (parameters, omega) = self.place(value).ok()?;
@@ -349,7 +351,8 @@ impl<M: OrbitMethod> Search<'_, M> {
             )
         };
         let free = |point: &Point| point.stability.rigid > 0;
-        self.points().any(free) && centred().is_none()
+        let mut branches = self.diagram.branches.iter();
+        branches.any(|branch| branch.branch.points.iter().any(free)) && centred().is_none()
     }
 
     /// The parameters and the frequency at a value.
@@ -380,72 +383,54 @@ impl<M: OrbitMethod> Search<'_, M> {
         Ok(Stroboscope::new(flow))
     }
 
-    fn points(&self) -> impl Iterator<Item = &Point> {
-        let branches = self.diagram.branches.iter();
-        branches.flat_map(|branch| &branch.branch.points)
-    }
-
-    /// Initial states at a value.
+    /// Where orbits are looked for at a value, and the map there.
     ///
     /// # Errors
     /// If no motion can be computed there.
-    fn starts(
-        &self,
-        value: f64,
-        mut map: Stroboscope,
-        settling: &Settling,
-    ) -> Result<Starts, Error> {
+    pub(super) fn starts(&self, value: f64, wide: bool) -> Result<(Starts, Stroboscope), Error> {
         let request = &self.response.request;
+        let mut map = self.map(value)?;
         let coordinates = request.system.facts().coordinates.len();
         let omega = request.held_omega(request.variable()?)?.unwrap_or(value);
-        let mut reach = vec![[f64::INFINITY, f64::NEG_INFINITY]; coordinates];
-        let mut include = |i: usize, low: f64, high: f64| {
-            reach[i] = [reach[i][0].min(low), reach[i][1].max(high)];
+        let branches = &self.diagram.branches;
+        let reach = match starts::reach(branches, coordinates) {
+            Some(reach) => reach,
+            None => {
+                from_rest(&mut map, omega).map_err(|reason| time::MotionError { value, reason })?
+            }
         };
-        for point in self.points() {
-            for (i, motion) in point.observed.motions.iter().enumerate() {
-                include(i, motion.minimum, motion.maximum);
-            }
-        }
-        if self.points().next().is_none() {
-            let mut state = vec![0.0; 2 * coordinates];
-            for _ in 0..FIRST_PERIODS {
-                let moved = map.map(&mut state);
-                moved.map_err(|reason| time::MotionError { value, reason })?;
-                for i in 0..coordinates {
-                    let speed = state[coordinates + i] / omega;
-                    let far = state[i].hypot(speed);
-                    include(i, -far, far);
-                }
-            }
-        }
-        let half = |[low, high]: [f64; 2]| 0.5 * (high - low);
-        let largest = reach.iter().copied().map(half).fold(0.0, f64::max);
-        let largest = if largest > 0.0 { largest } else { 1.0 };
-        let sizes = reach.iter().map(|ends| half(*ends).max(LEAST * largest));
-        let sizes: Vec<f64> = sizes.collect();
-        let middles = reach.iter().map(|[low, high]| 0.5 * (low + high));
-        let middles: Vec<f64> = middles.chain(vec![0.0; coordinates]).collect();
-        let speeds = sizes.iter().map(|size| omega * size);
-        let units: Vec<f64> = sizes.iter().copied().chain(speeds).collect();
-        let near = |point: &&Point| (point.value - value).abs();
-        let nearest = self
-            .points()
-            .min_by(|a, b| near(a).total_cmp(&near(b)))
-            .map(|point| point.orbit.state());
-        let rest = vec![0.0; 2 * coordinates];
-        let first = nearest.into_iter().chain([rest]);
-        let boxes: &[f64] = if settling.wide { &WIDE } else { &BOXES };
-        let others = (0..).map(|index| {
-            let size = boxes[index % boxes.len()];
-            let entries = sequence(index, 2 * coordinates).zip(&middles).zip(&units);
-            entries
-                .map(|((part, middle), unit)| middle + size * part * unit)
-                .collect()
-        });
-        let states = first.chain(others).take(settling.starts).collect();
-        Ok(Starts { map, units, states })
+        Ok((Starts::at(value, omega, branches, &reach, wide), map))
     }
+
+    /// The state of the nearest orbit that is known, and rest.
+    fn first_states(&self, value: f64) -> impl Iterator<Item = Vec<f64>> {
+        let near = |point: &&Point| (point.value - value).abs();
+        let branches = self.diagram.branches.iter();
+        let points = branches.flat_map(|branch| &branch.branch.points);
+        let nearest = points.min_by(|a, b| near(a).total_cmp(&near(b)));
+        let coordinates = self.response.request.system.facts().coordinates.len();
+        let nearest = nearest.map(|point| point.orbit.state());
+        nearest.into_iter().chain([vec![0.0; 2 * coordinates]])
+    }
+}
+
+/// How far a motion from rest goes.
+///
+/// # Errors
+/// If it cannot be computed.
+fn from_rest(map: &mut Stroboscope, omega: f64) -> Result<Reach, FlowError> {
+    let coordinates = map.order() / 2;
+    let mut reach = Reach::new(coordinates);
+    let mut state = vec![0.0; 2 * coordinates];
+    for _ in 0..FIRST_PERIODS {
+        map.map(&mut state)?;
+        for i in 0..coordinates {
+            let speed = state[coordinates + i] / omega;
+            let far = state[i].hypot(speed);
+            reach.include(i, -far, far);
+        }
+    }
+    Ok(reach)
 }
 
 /// States of an orbit at the beginnings of its periods.
@@ -455,21 +440,6 @@ type States = Vec<Vec<f64>>;
 struct Settled {
     fates: Vec<Fate>,
     orbits: Vec<States>,
-}
-
-/// Initial states, the sizes of their entries, and the map.
-struct Starts {
-    map: Stroboscope,
-    units: Vec<f64>,
-    states: Vec<Vec<f64>>,
-}
-
-/// A point of the sequence that fills the cube from -1 to 1 evenly: multiples of the powers of the root of `x^(n + 1) = x + 1`
-/// (Roberts 2018).
-fn sequence(index: usize, entries: usize) -> impl Iterator<Item = f64> {
-    let power = 1.0 / (entries + 1) as f64;
-    let root = (0..60).fold(1.5, |x: f64, _| (1.0 + x).powf(power));
-    (1..=entries).map(move |j| 2.0 * ((index + 1) as f64 / root.powi(j as i32)).fract() - 1.0)
 }
 
 impl<M: OrbitMethod> FrequencyResponse<M> {

@@ -82,6 +82,12 @@ pub enum Origin {
         #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         value: f64,
     },
+    /// Nothing that was followed leads to it, and no motion was seen to settle to it: Newton's method led to one of its orbits.
+    Solved {
+        /// Where, in what is varied.
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+        value: f64,
+    },
 }
 
 /// A bifurcation of which a further branch was not followed; of two sides the other may have been.
@@ -237,6 +243,8 @@ pub(super) struct Search<'v, M> {
     mirrored: bool,
     most_branches: usize,
     pub(super) points_left: usize,
+    /// States that were taken from boxes so far, see `starts.rs`.
+    pub(super) drawn: usize,
     /// Branch and event.
     queue: VecDeque<(usize, usize)>,
     pub(super) diagram: Diagram,
@@ -258,6 +266,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             mirrored: limits.mirrored,
             most_branches: limits.branches,
             points_left: limits.points,
+            drawn: 0,
             observer,
             queue: VecDeque::new(),
             diagram: Diagram::default(),
@@ -332,13 +341,13 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         self.diagram.branches.iter().position(contains)
     }
 
-    /// Takes in the branch through an attractor, given by its states at the beginnings of its periods, unless it is known; returns its
-    /// number.
+    /// Takes in the branch through an orbit, given by its states at the beginnings of its periods, unless it is known; returns its number.
     ///
     /// # Errors
     /// Why it was not followed.
-    pub(super) fn add_attractor(
+    pub(super) fn add_orbit(
         &mut self,
+        origin: Origin,
         value: f64,
         states: &[Vec<f64>],
     ) -> Result<usize, Reason> {
@@ -358,7 +367,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             }
             found => found,
         };
-        self.add(Origin::Attractor { value }, 0, branch.map_err(Reason::of)?);
+        self.add(origin, 0, branch.map_err(Reason::of)?);
         Ok(self.diagram.branches.len() - 1)
     }
 
@@ -379,7 +388,16 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         let request = request
             .near_orbit(&orbit.orbit)
             .max_points(self.points_left / 2);
-        request.through_with(value, |progress| self.observer.see(progress))
+        let branch = request.through_with(value, |progress| self.observer.see(progress))?;
+        // With other harmonics a balance may have gone on from an orbit beside it.
+        if branch
+            .points
+            .iter()
+            .any(|point| point.value == value && matching::passes(point, states))
+        {
+            return Ok(branch);
+        }
+        Err(Attempts::default().without_period(period, value).into())
     }
 
     fn follow(&mut self, number: usize, index: usize) -> Result<(), Reason> {

@@ -57,25 +57,34 @@ pub(super) fn contains<M: OrbitMethod>(
     if branch.period() != states.len() {
         return false;
     }
-    let found = branch.branch.plainly_at(value).unwrap_or_default();
-    found.iter().any(|found| passes(found, states))
-        || around(branch, value).any(|near| {
-            // A series may not resolve a state, and an orbit between two others may be lost.
-            let shooting = response.clone().by(Shooting::new()).stability(false);
-            let near = shooting.period(states.len()).near_orbit(&near.orbit);
-            near.orbit(value).is_ok_and(|found| passes(&found, states))
-        })
+    // From an orbit of the branch at this very value nothing else is near; from one beside it Newton's method may leave the branch.
+    let is_near = |near: &Point| {
+        let shooting = response.clone().by(Shooting::new()).stability(false);
+        let near = shooting.period(states.len()).near_orbit(&near.orbit);
+        near.orbit(value).is_ok_and(|found| passes(&found, states))
+    };
+    match branch.branch.plainly_at(value) {
+        // A series may not resolve a state.
+        Ok(found) => found
+            .iter()
+            .any(|found| passes(found, states) || is_near(found)),
+        // An orbit between two others is lost.
+        Err(_) => around(branch, value).any(is_near),
+    }
 }
 
 /// Of every two neighbours on a branch between which it passes a value, the nearer one.
-fn around(branch: &DiagramBranch, value: f64) -> impl Iterator<Item = &Point> {
+pub(super) fn around(branch: &DiagramBranch, value: f64) -> impl Iterator<Item = &Point> {
+    let off = move |point: &Point| (point.value - value).abs();
+    beside(branch, value).map(move |[a, b]| if off(a) < off(b) { a } else { b })
+}
+
+/// Every two neighbours on a branch between which it passes a value.
+pub(super) fn beside(branch: &DiagramBranch, value: f64) -> impl Iterator<Item = [&Point; 2]> {
     let off = move |point: &Point| point.value - value;
     let pairs = branch.branch.points.windows(2);
     let passing = pairs.filter(move |pair| off(&pair[0]) * off(&pair[1]) <= 0.0);
-    passing.map(move |pair| {
-        let first = off(&pair[0]).abs() < off(&pair[1]).abs();
-        if first { &pair[0] } else { &pair[1] }
-    })
+    passing.map(|pair| [&pair[0], &pair[1]])
 }
 
 /// Whether an orbit passes through one of some states at phase zero.

@@ -7,9 +7,13 @@ pub(crate) mod diagram;
 pub(crate) mod error;
 pub(crate) mod map;
 mod matching;
+mod nearest;
 mod request;
+mod scatter;
 mod settle;
 mod solutions;
+
+mod starts;
 mod stretches;
 mod transient;
 

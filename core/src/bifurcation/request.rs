@@ -154,11 +154,13 @@ impl<M: OrbitMethod> Bifurcations<M> {
 
         /// Covers the range by what exists there. Where the first branch turns back or ends before the other end, the branch from there is
         /// followed too. Then motions are followed until they have settled, for any number of coordinates: at the values that `settling`
-        /// says, and at others where no stable orbit is known; and the branch of every orbit that they settle to is followed both ways.
+        /// says, and at others where no stable orbit is known; and the branch of every orbit that they settle to is followed both ways. Around
+        /// the values that were asked for orbits of all periods up to [the longest](Settling::longest) are solved for by Newton's method too, since few motions
+        /// settle to an orbit with a small basin, and none to one that is stable between these values alone.
         /// [`Diagram::searched`] says what was searched and found, [`Diagram::uncovered`] where there is no orbit. What begins on the mirror
         /// image of a branch is followed like any other.
         ///
-        /// What exists and is not met by any of these motions is not found: more [values](Settling::values) and
+        /// What exists and is not met by any of these is not found: more [values](Settling::values) and
         /// [initial states](Settling::starts) find more.
         ///
         /// ```
@@ -317,7 +319,8 @@ impl<M: OrbitMethod> Bifurcations<M> {
             return Err(Reason::Interrupted);
         }
         for attractor in found.attractors {
-            if let Err(reason) = search.add_attractor(value, &attractor.points) {
+            let origin = Origin::Attractor { value };
+            if let Err(reason) = search.add_orbit(origin, value, &attractor.points) {
                 search.diagram.missed.push((value, reason));
             }
             search.exhaust();

@@ -2,8 +2,10 @@
 //! this project.
 
 use hertzian::attractors::basin::Fate;
-use hertzian::bifurcation::{Bifurcations, Diagram, Origin, Settling};
-use hertzian::{EventKind, FrequencyResponse, OrbitMethod, Shooting, Stop, Verdict};
+use hertzian::bifurcation::{Bifurcations, Diagram, DiagramBranch, Origin, Searched, Settling};
+use hertzian::{
+    Complex, EventKind, FrequencyResponse, OrbitMethod, Point, Shooting, Stop, Verdict,
+};
 use hertzian_tests::{OneSided, OneSidedLinear};
 
 const HERTZ: OneSided = OneSided {
@@ -151,4 +153,41 @@ fn images_of_what_one_motion_settles_to_are_covered_too() {
     assert_eq!(ends.len(), 2);
     assert!((ends[0][0] + ends[1][1]).abs() < 1e-9 && (ends[0][1] + ends[1][0]).abs() < 1e-9);
     assert!(ends[0][0] * ends[0][1] > 0.0, "{ends:?}");
+}
+
+/// The orbit of period three at frequency one that is stable there: peak-to-peak and a multiplier, as in `coexisting`.
+const OF_PERIOD_3: (f64, [f64; 2]) = (
+    40.702_307_432_878_71,
+    [-0.380_774_924_593_537_2, 0.817_888_662_584_343_5],
+);
+
+/// Motions from rest and from the nearest orbit settle to orbits of period one alone. Newton's method leads to the others.
+#[test]
+fn orbits_that_no_motion_settles_to_are_solved_for() {
+    let model = OneSidedLinear {
+        zeta: 0.032,
+        load: 1.0,
+        drive: 1.0,
+    };
+    let request = Bifurcations::of(&model).from(1.2).to(0.8).depth(0);
+    let settling = Settling::new().values(4).starts(2);
+    let diagram = request.cover(settling).run().expect("branches");
+    let periods = |searched: &Searched| searched.orbits.iter().all(|orbit| orbit.period == 1);
+    assert!(diagram.searched.iter().all(periods));
+    let solved = |branch: &&DiagramBranch| matches!(branch.origin, Origin::Solved { .. });
+    let (peak_to_peak, [re, im]) = OF_PERIOD_3;
+    let is_it = |point: &Point| {
+        let pair = &point.stability.multipliers;
+        let exact = Complex::new(re, im);
+        let near = pair.iter().any(|m| (m - exact).norm() < 1e-9);
+        near && (point.peak_to_peak() / peak_to_peak - 1.0).abs() < 1e-9
+    };
+    let branches = diagram.branches.iter().filter(solved);
+    let mut passing = branches.filter(|branch| {
+        let at = branch.branch.at(1.0).unwrap_or_default();
+        branch.period() == 3 && at.iter().any(is_it)
+    });
+    assert!(passing.next().is_some(), "{:?}", diagram.branches.len());
+    // On one branch alone.
+    assert!(passing.next().is_none());
 }
