@@ -1,7 +1,8 @@
 //! Extremes of the coordinates and of the gaps of an orbit, from one walk along its period.
 //!
-//! States are sampled: those of the pass where its nodes are dense enough, else eight to the shortest period of the load, the directions that
-//! move and those modes whose ringing makes up the rates of gaps but for a tenth, six on an interval at least. What rings faster is bounded,
+//! Signals are sampled: eight times in the shortest period of the load, the directions that move and those modes whose ringing makes up the rates but for a tenth, six
+//! times on an interval at least. Where the motion is in closed form each has as many samples as it asks for itself, of a [grid](super::grid) that all of them share. Where
+//! forces are unknown at nodes all have the same: those of the pass where its nodes are dense enough, else those that gaps ask for. What rings faster is bounded,
 //! and followed where an extreme may depend on it: see [`search`](super::search).
 //!
 //! Where a slope changes its sign between two samples, its zero is located to `1e-9` of their distance: of a gap every one, of a coordinate
@@ -36,7 +37,7 @@ const SAMPLES: f64 = 8.0;
 const FEWEST: f64 = 6.0;
 /// More are not taken, however fast the motion is.
 const MOST: f64 = 1e6;
-/// What makes up less than this part of the rates of a gap is not followed by samples alone.
+/// What makes up less than this part of the rates of a signal is not followed by samples alone.
 const PART: f64 = 0.1;
 /// Grids are at most so many times finer than the load asks for, as a power of two.
 const FINEST: usize = 10;
