@@ -1,6 +1,7 @@
 //! One orbit, or a branch of them, from a guess: [`newton`](crate::continuation::newton) solves for the first orbit, damped, and where that
 //! leads nowhere with more nodes and from the orbit by another method; the [engine](crate::branches::engine) follows the branch.
 
+use std::f64::consts::TAU;
 use std::time::Instant;
 
 use super::branch::method::{ContactBranch, REFUSALS};
@@ -12,6 +13,7 @@ use super::orbit::gaps::Gaps;
 use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
 use super::reading::minimal_period::Compared;
 use super::run::Run;
+use super::skeleton::Skeleton;
 use super::switches::fits::Fits;
 use super::switches::plan::Plan;
 use crate::branches::branch::Branch;
@@ -33,6 +35,8 @@ const COARSEST: f64 = 1e-6;
 /// Resolutions that a first orbit is looked for with.
 const TRIED: [usize; 3] = [FIRST, 5, 7];
 
+/// Samples of the linear response that say how large it is.
+const SEEN: usize = 64;
 /// Parts of its size that an orbit differs by from one that comes back earlier, where it was found to six digits.
 const GUESSED: f64 = 1e-5;
 
@@ -44,12 +48,17 @@ const AT_START: NewtonOptions = NewtonOptions {
 };
 
 /// Where a first orbit is looked for.
-pub(crate) struct Guesses<'g> {
-    /// An orbit that is cheap to have.
-    pub(crate) first: &'g Point,
+pub(crate) struct Guesses<'g, 'p> {
+    /// What needs no search.
+    pub(crate) untouched: Option<Untouched<'p>>,
+    /// An orbit that is cheap to have, where that is none.
+    pub(crate) first: Option<&'g Point>,
     /// The orbit by another method, for where that leads nowhere.
     pub(crate) better: &'g mut dyn FnMut() -> Result<Point, Error>,
 }
+
+/// The response of the linear part where no contact acts on it.
+pub(crate) struct Untouched<'p>(Run<'p>, Vec<f64>);
 
 /// A branch, and what it goes on from, where it was interrupted.
 pub(crate) struct Followed {
@@ -69,9 +78,9 @@ struct First {
 ///
 /// # Errors
 /// If none is found.
-pub(crate) fn orbit(
-    problem: &ContactProblem,
-    guesses: Guesses<'_>,
+pub(crate) fn orbit<'p>(
+    problem: &'p ContactProblem,
+    guesses: Guesses<'_, 'p>,
     value: f64,
 ) -> Result<Point, Error> {
     let (mut run, mut u) = begun(problem, guesses, value)?;
@@ -112,9 +121,9 @@ fn lost(value: f64) -> OrbitError {
 ///
 /// # Errors
 /// If there is no first orbit.
-pub(crate) fn branch(
-    problem: &ContactProblem,
-    guesses: Guesses<'_>,
+pub(crate) fn branch<'p>(
+    problem: &'p ContactProblem,
+    guesses: Guesses<'_, 'p>,
     [from, to]: [f64; 2],
     visit: See<'_>,
 ) -> Result<Followed, Error> {
@@ -213,13 +222,18 @@ const RELOCATED: usize = 3;
 /// A run whose equations fit a first orbit, and its unknowns.
 fn begun<'p>(
     problem: &'p ContactProblem,
-    guesses: Guesses<'_>,
+    guesses: Guesses<'_, 'p>,
     value: f64,
 ) -> Result<(Run<'p>, Vec<f64>), Error> {
     let Guesses {
+        untouched,
         first: guess,
         better,
     } = guesses;
+    if let Some(Untouched(run, u)) = untouched {
+        return Ok((run, u));
+    }
+    let guess = guess.ok_or(lost(value))?;
     let fitting = |guess: &Guess<'_>| {
         let first = first(problem, guess, value)?;
         let found = fitting(problem, first);
@@ -230,6 +244,86 @@ fn begun<'p>(
             return Err(reason);
         };
         fitting(&Guess::by_motion(problem, &better)?)
+    })
+}
+
+/// The response of the linear part, with the equations that fit it, where no contact acts on it: it is an orbit then. A search by the balance would end there
+/// as well, since it begins with the response of the system as it is at rest, and with many modes takes longer than a branch.
+pub(crate) fn untouched(problem: &ContactProblem, value: f64) -> Option<Untouched<'_>> {
+    if problem.asked.period != 1 {
+        return None;
+    }
+    let mut recurrence = Recurrence::whole(1);
+    loop {
+        let first = untouched_like(problem, value, &recurrence)?;
+        if let Some(earlier) = problem.earlier(&first.equations, problem.same()) {
+            recurrence = earlier;
+            continue;
+        }
+        let (run, u) = fitting(problem, first)?;
+        return is_untouched(&run.equations.skeleton).then_some(Untouched(run, u));
+    }
+}
+
+/// No contact acts, and none is about to.
+fn is_untouched(skeleton: &Skeleton) -> bool {
+    let mut intervals = skeleton.intervals.iter();
+    let free =
+        intervals.all(|interval| interval.active.is_empty() && interval.configuration.is_none());
+    free && skeleton.switches.is_empty()
+}
+
+/// The same, until it comes back like this.
+fn untouched_like(problem: &ContactProblem, value: f64, recurrence: &Recurrence) -> Option<First> {
+    let values = problem.setting.values(value)?;
+    if values.has_resonance() {
+        return None;
+    }
+    let coordinates = values.linear.rows.len();
+    let at = |phase: f64, state: &mut [f64]| {
+        let mut steady = vec![0.0; 2 * coordinates];
+        values.write_steady(phase, &mut steady, None);
+        values.linear.write_physical(&steady, state);
+    };
+    let mut motions = vec![Motion::NONE; coordinates];
+    let mut state = vec![0.0; 2 * coordinates];
+    for sample in 0..SEEN {
+        at(TAU * sample as f64 / SEEN as f64, &mut state);
+        for (motion, x) in motions.iter_mut().zip(&state) {
+            motion.include(*x);
+        }
+    }
+    let ranges = motions.iter().map(|of| 0.5 * of.peak_to_peak());
+    let size = ranges.fold(0.0, f64::max);
+    if size == 0.0 {
+        return None;
+    }
+    let gaps = Gaps {
+        values: &values,
+        at: &at,
+        coordinates,
+    };
+    let plan = Plan::sampled(&gaps, recurrence);
+    let frame = Frame {
+        reference: motions
+            .iter()
+            .map(Motion::middle)
+            .chain(vec![0.0; coordinates])
+            .collect(),
+        size,
+        resolution: RESOLUTIONS[FIRST],
+    };
+    let (mut equations, mut u) = plan.equations(&problem.setting, value, &gaps, &frame)?;
+    if !is_untouched(&equations.skeleton) {
+        return None;
+    }
+    let mut newton = Newton::new(&equations);
+    solve::at_value(&mut equations, &mut newton, &mut u, AT_START).ok()?;
+    Some(First {
+        equations,
+        u,
+        frame,
+        resolution: FIRST,
     })
 }
 

@@ -10,7 +10,7 @@ use crate::branches::branch::{Branch, Further};
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::request::Request;
-use crate::contact_equation::compute::{Followed, Guesses};
+use crate::contact_equation::compute::{Followed, Guesses, Untouched};
 use crate::contact_equation::problem::ContactProblem;
 use crate::contact_equation::{ContactEquation, Rest, compute};
 use crate::error::Error;
@@ -28,9 +28,10 @@ impl Follow for ContactEquation {
             .held()
             .problem(value, value)?;
         let problem = ContactProblem::new(asked, request.tolerance);
-        let first = by_shooting::with_series(request, value)?;
+        let (untouched, first) = start(&problem, request, value)?;
         let guesses = Guesses {
-            first: &first,
+            untouched,
+            first: first.as_ref(),
             better: &mut || self.shooting().orbit(request, value),
         };
         compute::orbit(&problem, guesses, value)
@@ -85,14 +86,33 @@ pub(super) fn run(
     visit: See<'_>,
 ) -> Result<Branch, Error> {
     let (range, problem) = equation.problem(request)?;
-    let first = by_shooting::with_series(request, range[0])?;
+    let (untouched, first) = start(&problem, request, range[0])?;
     begin(request, || further(request, equation, None, otherwise))?;
     let guesses = Guesses {
-        first: &first,
+        untouched,
+        first: first.as_ref(),
         better: &mut || equation.shooting().orbit(request, range[0]),
     };
     let followed = compute::branch(&problem, guesses, range, visit)?;
     Ok(with_request(followed, request, equation, otherwise))
+}
+
+/// What a branch begins with: the linear response where that meets no contact and nothing else is asked for, or an orbit by another method.
+fn start<'p>(
+    problem: &'p ContactProblem,
+    request: &Request,
+    value: f64,
+) -> Result<(Option<Untouched<'p>>, Option<Point>), Error> {
+    let untouched = if request.near.is_none() {
+        compute::untouched(problem, value)
+    } else {
+        None
+    };
+    if untouched.is_some() {
+        return Ok((untouched, None));
+    }
+    let first = by_shooting::with_series(request, value)?;
+    Ok((None, Some(first)))
 }
 
 /// Goes on with a branch that was interrupted.

@@ -46,8 +46,11 @@ impl Over<'_> {
             return found;
         }
         let coefficients: Vec<Vec<f64>> = self.coefficients().collect();
+        let invariants = invariants(layout, &coefficients[0]);
+        let size = |matrix: &Vec<f64>| matrix.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let mut search = Search {
-            invariants: invariants(layout, &coefficients[0]),
+            sizes: invariants.iter().map(size).collect(),
+            invariants,
             coordinates: layout.coordinates,
             tried: 0,
             chosen: Vec::new(),
@@ -204,6 +207,8 @@ fn differs(u: &[f64], coordinates: usize, image: &SignedPermutation, shift: f64)
 /// The search, coordinate by coordinate.
 struct Search {
     invariants: Vec<Vec<f64>>,
+    /// The largest entries of these.
+    sizes: Vec<f64>,
     coordinates: usize,
     tried: usize,
     /// Places and signs of the first coordinates.
@@ -243,8 +248,8 @@ impl Search {
         let n = self.coordinates;
         let last = self.chosen.len() - 1;
         let (place, sign) = self.chosen[last];
-        self.invariants.iter().all(|matrix| {
-            let size = matrix.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let mut matrices = self.invariants.iter().zip(&self.sizes);
+        matrices.all(|(matrix, size)| {
             let near = |x: f64, y: f64| (x - y).abs() <= SIMILAR * size;
             let mut before = self.chosen.iter().enumerate();
             before.all(|(i, &(other, other_sign))| {

@@ -73,7 +73,7 @@ impl Run<'_> {
     fn of_period(&self) -> Vec<GapExtreme> {
         let motion = Motion::of(&self.equations);
         let skeleton = &self.equations.skeleton;
-        let found = motion.extremes().gaps.concat();
+        let found = motion.gap_extremes().concat();
         let images = self.images();
         let parts = skeleton.recurrence().parts;
         let image = |extreme: &GapExtreme, part: usize| {

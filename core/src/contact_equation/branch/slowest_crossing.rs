@@ -26,7 +26,7 @@ impl Run<'_> {
             return f64::INFINITY;
         }
         let motion = Motion::of(&self.equations);
-        let found = motion.extremes().gaps.concat();
+        let found = motion.gap_extremes().concat();
         let skeleton = &self.equations.skeleton;
         let heights = skeleton.switches.iter().enumerate().map(|(index, switch)| {
             let contact = switch.contact;

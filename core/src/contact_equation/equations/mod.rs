@@ -112,7 +112,7 @@ pub(super) struct Equations {
     pub(super) eliminated: Eliminated,
     pub(super) passed: Vec<Passed>,
     /// Of the last pass, when they are asked for.
-    pub(super) extremes: OnceCell<Extremes>,
+    pub(super) extremes: Extremes,
     /// Where slopes of forces jump between switches in it, when that is asked for.
     pub(super) kinks: OnceCell<Vec<Kink>>,
     /// Contacts in each other's place when an orbit has come back, once they were seen.
@@ -157,7 +157,7 @@ impl Equations {
             pairs: None,
             eliminated: Eliminated::default(),
             passed: Vec::new(),
-            extremes: OnceCell::new(),
+            extremes: Extremes::default(),
             kinks: OnceCell::new(),
             images: OnceCell::new(),
             known: [Vec::new(), Vec::new()],
@@ -270,7 +270,7 @@ impl Equations {
         self.last.clear();
         // Derivatives do not move them.
         if !known {
-            self.extremes = OnceCell::new();
+            self.extremes = Extremes::default();
             self.kinks = OnceCell::new();
         }
         self.failed = !self.set(u[n]);

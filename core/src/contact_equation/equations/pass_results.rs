@@ -1,5 +1,7 @@
 //! What the last pass has met, as data: for whoever looks at the motion afterwards, and what they have found, which is kept with it.
 
+use std::cell::OnceCell;
+
 use crate::numeric::roots::Place;
 
 /// What was met on an interval, for whoever looks at the motion afterwards.
@@ -28,13 +30,13 @@ pub(in crate::contact_equation) struct GapExtreme {
     pub(in crate::contact_equation) maximum: bool,
 }
 
-/// The extremes of one orbit.
+/// The extremes of one orbit, as far as they were asked for: those of gaps say whether equations fit it, those of coordinates are read where it is kept.
 #[derive(Debug, Clone, Default)]
 pub(in crate::contact_equation) struct Extremes {
     /// Per coordinate, phase and value where it is smallest and largest over the period.
-    pub(in crate::contact_equation) coordinates: Vec<[Place; 2]>,
+    pub(in crate::contact_equation) coordinates: OnceCell<Vec<[Place; 2]>>,
     /// Per contact, in the order of time, until the orbit comes back; none where its law has no levels.
-    pub(in crate::contact_equation) gaps: Vec<Vec<GapExtreme>>,
+    pub(in crate::contact_equation) gaps: OnceCell<Vec<Vec<GapExtreme>>>,
 }
 
 /// A contact with the gap that another one has had, or with the opposite.

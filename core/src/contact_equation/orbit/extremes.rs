@@ -1,7 +1,8 @@
 //! Extremes of the coordinates and of the gaps of an orbit, from one walk along its period.
 //!
-//! States are sampled: those of the pass where its nodes are dense enough, else eight to the shortest period of the load, the directions that
-//! move and those modes whose ringing makes up the rates of gaps but for a tenth, six on an interval at least. What rings faster is bounded,
+//! Signals are sampled: eight times in the shortest period of the load, the directions that move and those modes whose ringing makes up the rates but for a tenth, six
+//! times on an interval at least. Where the motion is in closed form each has as many samples as it asks for itself, of a [grid](super::grid) that all of them share. Where
+//! forces are unknown at nodes all have the same: those of the pass where its nodes are dense enough, else those that gaps ask for. What rings faster is bounded,
 //! and followed where an extreme may depend on it: see [`search`](super::search).
 //!
 //! Where a slope changes its sign between two samples, its zero is located to `1e-9` of their distance: of a gap every one, of a coordinate
@@ -14,17 +15,19 @@
 //!
 //! Source: de Boor (2001), A Practical Guide to Splines, chapter IV (cubic Hermite interpolation).
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
 use std::ops::Range;
 
 use super::content::Content;
+use super::grid::Grid;
 use super::motion::Motion;
-use super::search::{Cubic, Largest, Way, extreme};
+use super::search::{Cubic, Largest, Part, extreme};
 use super::signal::{Look, Of, Signal, Term};
 use super::sums::integrals_of;
-use crate::contact_equation::equations::pass_results::{Extremes, GapExtreme};
+use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::linear_part::block::Block;
+use crate::contact_equation::linear_part::values::Contact;
 use crate::contact_equation::skeleton::placement::Told;
 use crate::numeric::roots::Place;
 
@@ -34,8 +37,12 @@ const SAMPLES: f64 = 8.0;
 const FEWEST: f64 = 6.0;
 /// More are not taken, however fast the motion is.
 const MOST: f64 = 1e6;
-/// What makes up less than this part of the rates of a gap is not followed by samples alone.
+/// What makes up less than this part of the rates of a signal is not followed by samples alone.
 const PART: f64 = 0.1;
+/// Grids are at most so many times finer than the load asks for, as a power of two.
+const FINEST: usize = 10;
+/// Beyond the coarsest one they have no more samples.
+const FULLEST: usize = 1 << 14;
 /// Of so many modes all are followed by samples.
 const FEW: usize = 1;
 /// Two extremes of a gap as near as this are one.
@@ -51,46 +58,66 @@ const ASIDE: f64 = 1e-3;
 pub(in crate::contact_equation) struct Sampled {
     pub(super) interval: usize,
     pub(super) content: Content,
+    /// Where nothing is unknown at nodes, grids, each twice as fine as the one before; and how many parts the first has.
+    grids: Vec<OnceCell<Grid>>,
+    parts: usize,
     phases: Vec<f64>,
     states: Vec<f64>,
     /// States at other phases, by the bits of these.
     others: RefCell<HashMap<u64, Vec<f64>>>,
 }
 
-impl Extremes {
-    /// Of the motion of the last pass.
-    pub(in crate::contact_equation) fn of(motion: &Motion<'_>) -> Self {
-        let values = &motion.equations.values;
-        let sampled = motion.sampled();
-        let mut gaps = Vec::new();
-        for (contact, of) in values.contacts.iter().enumerate() {
-            let mut found = Vec::new();
-            if !of.levels.is_empty() {
-                let mut end = None;
-                for sampled in sampled {
-                    let signal = Signal::new(motion, sampled, Of::Gap(contact));
-                    let scan = Scan {
-                        motion,
-                        signal,
-                        interval: sampled.interval,
-                        contact,
-                        found: &mut found,
-                    };
-                    sampled.gap(scan, &mut end);
-                }
-                add_short(motion, contact, &mut found);
-            }
-            gaps.push(found);
-        }
-        let coordinates = 0..values.linear.rows.len();
-        let coordinates =
-            coordinates.map(|coordinate| farthest(motion, sampled, Of::Coordinate(coordinate)));
-        let coordinates: Vec<[Place; 2]> = coordinates.collect();
-        Self {
-            coordinates: of_period(motion, &coordinates),
-            gaps,
+/// Samples of a signal on an interval.
+pub(super) struct Samples<'s> {
+    pub(super) phases: &'s [f64],
+    pub(super) values: Vec<f64>,
+    pub(super) rates: Vec<f64>,
+}
+
+impl Samples<'_> {
+    pub(super) fn look(&self, index: usize) -> Look {
+        Look {
+            x: self.phases[index],
+            value: self.values[index],
+            rate: self.rates[index],
         }
     }
+}
+
+/// Extremes of all gaps.
+pub(super) fn extremes_of_gaps(motion: &Motion<'_>) -> Vec<Vec<GapExtreme>> {
+    let sampled = motion.sampled();
+    let contacts = motion.equations.values.contacts.iter().enumerate();
+    let of = |(contact, of): (usize, &Contact)| {
+        let mut found = Vec::new();
+        if !of.levels.is_empty() {
+            let mut end = None;
+            for sampled in sampled {
+                let signal = Signal::new(motion, sampled, Of::Gap(contact));
+                let samples = signal.samples();
+                let scan = Scan {
+                    motion,
+                    signal,
+                    interval: sampled.interval,
+                    contact,
+                    found: &mut found,
+                };
+                scan.go(&samples, &mut end);
+            }
+            add_short(motion, contact, &mut found);
+        }
+        found
+    };
+    contacts.map(of).collect()
+}
+
+/// Those of all coordinates, over the period.
+pub(super) fn extremes_of_coordinates(motion: &Motion<'_>) -> Vec<[Place; 2]> {
+    let sampled = motion.sampled();
+    let coordinates = 0..motion.equations.values.linear.rows.len();
+    let found = coordinates.map(|coordinate| farthest(motion, sampled, Of::Coordinate(coordinate)));
+    let found: Vec<[Place; 2]> = found.collect();
+    of_period(motion, &found)
 }
 
 /// What a sum of coordinates does until the orbit comes back.
@@ -142,32 +169,23 @@ pub(in crate::contact_equation) fn extremes_of(
 
 /// The smallest and the largest value of a signal.
 fn farthest(motion: &Motion<'_>, sampled: &[Sampled], of: Of<'_>) -> [Place; 2] {
-    let mut ways = Vec::new();
-    let mut parts: Vec<Signal<'_, '_>> = Vec::new();
     let none = |value: f64| Place { x: 0.0, value };
     let mut ends = [none(f64::INFINITY), none(f64::NEG_INFINITY)];
-    for sampled in sampled {
+    let parts = sampled.iter().map(|sampled| {
         let signal = Signal::new(motion, sampled, of);
-        let mut before: Option<Look> = None;
-        for (index, &phase) in sampled.phases.iter().enumerate() {
-            let next = signal.of_states(phase, sampled.states(index));
-            let place = none(next.value);
-            let place = Place { x: phase, ..place };
-            if next.value < ends[0].value {
-                ends[0] = place;
+        let samples = signal.samples();
+        Part { signal, samples }
+    });
+    let mut parts: Vec<Part<'_, '_>> = parts.collect();
+    for Part { samples, .. } in &parts {
+        for (&x, &value) in samples.phases.iter().zip(&samples.values) {
+            if value < ends[0].value {
+                ends[0] = Place { x, value };
             }
-            if next.value > ends[1].value {
-                ends[1] = place;
+            if value > ends[1].value {
+                ends[1] = Place { x, value };
             }
-            if let Some(before) = before {
-                ways.push(Way {
-                    part: parts.len(),
-                    ends: [before, next],
-                });
-            }
-            before = Some(next);
         }
-        parts.push(signal);
     }
     let range = ends[1].value - ends[0].value;
     for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
@@ -178,7 +196,7 @@ fn farthest(motion: &Motion<'_>, sampled: &[Sampled], of: Of<'_>) -> [Place; 2] 
             range,
             best: *end,
         };
-        *end = largest.search(&ways);
+        *end = largest.search();
     }
     ends
 }
@@ -225,6 +243,8 @@ impl Sampled {
                 let mut sampled = Self {
                     interval,
                     content: Content::of(motion, interval),
+                    grids: Vec::new(),
+                    parts: 0,
                     phases: Vec::new(),
                     states: Vec::new(),
                     others: RefCell::default(),
@@ -239,6 +259,12 @@ impl Sampled {
         let passed = &motion.equations.passed[self.interval];
         let [from, to] = passed.phases;
         let of = &motion.equations.skeleton.intervals[self.interval];
+        if motion.is_closed(self.interval) {
+            let parts = (SAMPLES * motion.moves(self.interval) * (to - from)).max(FEWEST);
+            self.parts = parts.ceil().min(MOST) as usize;
+            self.grids.resize_with(FINEST + 1, OnceCell::new);
+            return;
+        }
         let fastest = motion.moves(self.interval).max(self.rings(motion));
         let parts = (SAMPLES * fastest * (to - from)).max(FEWEST);
         let order = motion.equations.skeleton.order;
@@ -279,6 +305,32 @@ impl Sampled {
         turns.fold(0.0, f64::max) / values.base / std::f64::consts::TAU
     }
 
+    /// Samples that are so near to each other, in phase; nothing where forces are unknown at nodes.
+    pub(super) fn grid(&self, motion: &Motion<'_>, turns: f64) -> Option<&Grid> {
+        let [from, to] = motion.phases(self.interval);
+        let parts = SAMPLES * turns * (to - from) / std::f64::consts::TAU;
+        let level = (parts / self.parts as f64).log2().ceil().max(0.0) as usize;
+        let mut level = level.min(self.grids.len().checked_sub(1)?);
+        while level > 0 && self.parts << level > FULLEST {
+            level -= 1;
+        }
+        let grid = || Grid::new(motion, self.interval, self.parts << level);
+        Some(self.grids[level].get_or_init(grid))
+    }
+
+    /// What is followed by samples of a signal turns so fast, in a unit of phase.
+    pub(super) fn turns(&self, motion: &Motion<'_>, signal: &Signal<'_, '_>) -> f64 {
+        let base = motion.equations.values.base;
+        let blocks = &motion.values(self.interval).linear.blocks;
+        if blocks.len() > FEW {
+            return signal.most(PART) / base;
+        }
+        let turning = blocks
+            .iter()
+            .filter(|block| block.real_exponents().is_none());
+        turning.map(Block::rate).fold(0.0, f64::max) / base
+    }
+
     /// Looks at the states at a phase, which are kept.
     pub(super) fn at<T>(&self, motion: &Motion<'_>, x: f64, look: impl FnOnce(&[f64]) -> T) -> T {
         let mut others = self.others.borrow_mut();
@@ -293,39 +345,15 @@ impl Sampled {
     /// At how many phases states are known.
     #[cfg(test)]
     pub(in crate::contact_equation) fn count(&self) -> usize {
-        self.phases.len() + self.others.borrow().len()
+        let grids = self.grids.iter().filter_map(OnceCell::get);
+        let on_grids: usize = grids.map(|grid| grid.phases.len()).sum();
+        on_grids + self.phases.len() + self.others.borrow().len()
     }
 
-    fn states(&self, index: usize) -> &[f64] {
-        let order = self.states.len() / self.phases.len();
-        &self.states[index * order..][..order]
-    }
-
-    /// Extremes of a gap. Which sign its rate has where two intervals meet, as at an extreme of another gap that is opposite to it, is rounding:
-    /// it is one for both of them.
-    fn gap(&self, mut scan: Scan<'_, '_, '_>, end: &mut Option<Look>) {
-        let last = self.phases.len() - 1;
-        let at = |scan: &Scan<'_, '_, '_>, index: usize| {
-            let phase = self.phases[index];
-            scan.signal.of_states(phase, self.states(index))
-        };
-        let mut before = at(&scan, 0);
-        if let Some(end) = end.filter(|end| (end.x - before.x).abs() <= SEEN_TWICE) {
-            before.rate = end.rate;
-        }
-        for index in 1..=last {
-            let mut next = at(&scan, index);
-            let here = next;
-            if index == 1 {
-                scan.move_inside(&mut before, next.x, true);
-            }
-            if index == last {
-                scan.move_inside(&mut next, before.x, false);
-            }
-            scan.between(before, next, HALVINGS);
-            before = here;
-        }
-        *end = Some(before);
+    /// Phases with states, where there is no grid.
+    pub(super) fn known(&self) -> (&[f64], impl Iterator<Item = &[f64]>) {
+        let order = self.states.len() / self.phases.len().max(1);
+        (&self.phases, self.states.chunks_exact(order.max(1)))
     }
 }
 
@@ -339,6 +367,28 @@ struct Scan<'s, 'm, 'e> {
 }
 
 impl Scan<'_, '_, '_> {
+    /// Which sign a rate has where two intervals meet, as at an extreme of another gap that is opposite to it, is rounding: it is one for both of them.
+    fn go(mut self, samples: &Samples<'_>, end: &mut Option<Look>) {
+        let last = samples.phases.len() - 1;
+        let mut before = samples.look(0);
+        if let Some(end) = end.filter(|end| (end.x - before.x).abs() <= SEEN_TWICE) {
+            before.rate = end.rate;
+        }
+        for index in 1..=last {
+            let mut next = samples.look(index);
+            let here = next;
+            if index == 1 {
+                self.move_inside(&mut before, next.x, true);
+            }
+            if index == last {
+                self.move_inside(&mut next, before.x, false);
+            }
+            self.between(before, next, HALVINGS);
+            before = here;
+        }
+        *end = Some(before);
+    }
+
     /// Where an interval begins or ends at an extreme that is short of a level, which is added afterwards, the sign of the rate is that beside it.
     fn move_inside(&mut self, end: &mut Look, other: f64, begins: bool) {
         let skeleton = &self.motion.equations.skeleton;

@@ -5,6 +5,7 @@ mod content;
 pub(super) mod extremes;
 mod forced;
 pub(super) mod gaps;
+mod grid;
 pub(super) mod kinks;
 pub(super) mod motion;
 mod search;

@@ -5,16 +5,17 @@
 
 use std::cell::{OnceCell, RefCell};
 
-use super::extremes::Sampled;
+use super::extremes::{Sampled, extremes_of_coordinates, extremes_of_gaps};
 use super::forced::Forced;
 use crate::contact_equation::collocation::partway::Partway;
 use crate::contact_equation::equations::Equations;
-use crate::contact_equation::equations::pass_results::Extremes;
+use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::linear_part::configuration::Configuration;
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::linear::{Seen, of_states};
 use crate::contact_equation::linear_part::values::{Contact, Instant, Values, pair};
+use crate::numeric::roots::Place;
 use crate::time;
 
 /// One of so many pairs of states is worth to be followed alone.
@@ -161,6 +162,11 @@ impl<'e> Motion<'e> {
         self.configuration(interval).map_or(own, |of| &of.values)
     }
 
+    /// Nothing is unknown at nodes and no wave is in resonance: the motion is in closed form.
+    pub(super) fn is_closed(&self, interval: usize) -> bool {
+        self.equations.passed[interval].forced.is_empty() && !self.values(interval).has_resonance()
+    }
+
     /// Forces at nodes make pairs of states ring between these.
     pub(super) fn is_rung(&self, interval: usize) -> bool {
         let Equations {
@@ -281,9 +287,16 @@ impl<'e> Motion<'e> {
         self.sampled.get_or_init(|| Sampled::of(self))
     }
 
-    /// Extremes of the coordinates and of the gaps. They are looked for once.
-    pub(in crate::contact_equation) fn extremes(&self) -> &'e Extremes {
-        self.equations.extremes.get_or_init(|| Extremes::of(self))
+    /// Per coordinate, where it is smallest and largest over the period. They are looked for once.
+    pub(in crate::contact_equation) fn coordinate_extremes(&self) -> &'e [[Place; 2]] {
+        let known = &self.equations.extremes.coordinates;
+        known.get_or_init(|| extremes_of_coordinates(self))
+    }
+
+    /// Extremes of the gaps, the same.
+    pub(in crate::contact_equation) fn gap_extremes(&self) -> &'e [Vec<GapExtreme>] {
+        let known = &self.equations.extremes.gaps;
+        known.get_or_init(|| extremes_of_gaps(self))
     }
 
     /// Periods in a unit of phase of the fastest of the load on an interval and of the directions that move.

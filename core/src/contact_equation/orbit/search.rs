@@ -25,6 +25,7 @@
 //! solving discrete programming problems, Econometrica 28 (bounds).
 
 use super::content::Fast;
+use super::extremes::Samples;
 use super::signal::{Look, Signal};
 use crate::numeric::roots::Place;
 
@@ -200,11 +201,15 @@ pub(super) struct Way {
     pub(super) ends: [Look; 2],
 }
 
+/// A signal on an interval, and its samples.
+pub(super) struct Part<'m, 'e> {
+    pub(super) signal: Signal<'m, 'e>,
+    pub(super) samples: Samples<'m>,
+}
+
 /// What a value may be above the cubic, without what rings too fast.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Slack {
-    part: Option<usize>,
-    wide: f64,
     of: f64,
     /// What rings too fast.
     fast: Fast,
@@ -212,7 +217,7 @@ struct Slack {
 
 /// The largest value of a signal that is given part by part, with a sign.
 pub(super) struct Largest<'s, 'm, 'e> {
-    pub(super) parts: &'s mut [Signal<'m, 'e>],
+    pub(super) parts: &'s mut [Part<'m, 'e>],
     pub(super) base: f64,
     pub(super) sign: f64,
     /// Largest less smallest sample.
@@ -222,33 +227,10 @@ pub(super) struct Largest<'s, 'm, 'e> {
 
 impl Largest<'_, '_, '_> {
     /// Looks for it in all ways between samples.
-    pub(super) fn search(&mut self, ways: &[Way]) -> Place {
+    pub(super) fn search(&mut self) -> Place {
         let mut bounds: Vec<(f64, Way)> = Vec::new();
-        let mut slack = Slack::default();
-        for way in ways {
-            let wide = way.ends[1].x - way.ends[0].x;
-            if slack.part != Some(way.part) || wide > slack.wide {
-                slack = self.slack(way, wide);
-            }
-            // Most ways are far from it: of a cubic no more is asked than how far it may be above its ends.
-            let [before, next] = way.ends.map(|end| self.sign * end.value);
-            let top = self.has_top(&way.ends);
-            let rise = if top {
-                way.ends[0].rate.abs().max(way.ends[1].rate.abs()) * wide / self.base
-            } else {
-                0.0
-            };
-            let [from, _] = self.parts[way.part].phases();
-            let fast = slack.fast.after((way.ends[0].x - from) / self.base);
-            let wrong = 2.0 * fast.value + 0.5 * wide / self.base * fast.rate;
-            let most = before.max(next) + rise + slack.of + wrong;
-            if !top && fast.is_none() || !self.may_exceed(most) {
-                continue;
-            }
-            let bound = self.bound(way, way.ends[1].x - way.ends[0].x);
-            if self.may_exceed(bound) {
-                bounds.push((bound, *way));
-            }
+        for part in 0..self.parts.len() {
+            self.add_ways(part, &mut bounds);
         }
         bounds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
         for (bound, way) in bounds {
@@ -260,9 +242,42 @@ impl Largest<'_, '_, '_> {
         self.best
     }
 
+    /// Ways of a part in which it may be, with the bounds there. Most are far from it: of a cubic no more is asked than how far it may be above its ends.
+    fn add_ways(&self, part: usize, bounds: &mut Vec<(f64, Way)>) {
+        let Part { samples, .. } = &self.parts[part];
+        let ways = samples.phases.windows(2).map(|ends| ends[1] - ends[0]);
+        let wide = ways.fold(0.0, f64::max);
+        let slack = self.slack(part, wide);
+        let none = slack.fast.is_none();
+        let wrong = 2.0 * slack.fast.value + 0.5 * wide / self.base * slack.fast.rate;
+        let least = self.sign * self.best.value - slack.of - wrong;
+        let (steep, sign) = (wide / self.base, self.sign);
+        let pairs = samples.values.windows(2).zip(samples.rates.windows(2));
+        for (index, (values, rates)) in pairs.enumerate() {
+            let top = sign * rates[0] > 0.0 && sign * rates[1] <= 0.0;
+            if !top && none {
+                continue;
+            }
+            let rise = if top {
+                rates[0].abs().max(rates[1].abs()) * steep
+            } else {
+                0.0
+            };
+            if (sign * values[0]).max(sign * values[1]) + rise <= least {
+                continue;
+            }
+            let ends = [samples.look(index), samples.look(index + 1)];
+            let way = Way { part, ends };
+            let bound = self.bound(&way, ends[1].x - ends[0].x);
+            if self.may_exceed(bound) {
+                bounds.push((bound, way));
+            }
+        }
+    }
+
     /// What a value may be above the cubic in all ways of a part that are no wider.
-    fn slack(&self, way: &Way, wide: f64) -> Slack {
-        let signal = &self.parts[way.part];
+    fn slack(&self, part: usize, wide: f64) -> Slack {
+        let signal = &self.parts[part].signal;
         let h = wide / self.base;
         let fast = signal.fast(h);
         let forced = if signal.is_forced() {
@@ -274,8 +289,6 @@ impl Largest<'_, '_, '_> {
         let slow = signal.fourth(0.0) * h.powi(4) / 384.0;
         let slow = slow.min(signal.fourth(h) * h.powi(4) / 384.0 + fast.value);
         Slack {
-            part: Some(way.part),
-            wide,
             of: slow + forced,
             fast,
         }
@@ -303,7 +316,7 @@ impl Largest<'_, '_, '_> {
     fn bound(&self, way: &Way, wide: f64) -> f64 {
         let [before, next] = way.ends;
         let cubic = Cubic::of(&before, &next, self.base);
-        let signal = &self.parts[way.part];
+        let signal = &self.parts[way.part].signal;
         let fast = signal.fast_from(cubic.h, before.x);
         let top = self.has_top(&way.ends);
         if !top && fast.is_none() {
@@ -327,13 +340,13 @@ impl Largest<'_, '_, '_> {
 
     fn look(&mut self, way: Way, wide: f64) {
         let cubic = Cubic::of(&way.ends[0], &way.ends[1], self.base);
-        let signal = &mut self.parts[way.part];
+        let signal = &mut self.parts[way.part].signal;
         let fast = signal.fast_from(cubic.h, way.ends[0].x);
         if fast.is_none() || cubic.turns_once(fast) {
             if !self.has_top(&way.ends) {
                 return;
             }
-            let found = extreme(&mut self.parts[way.part], way.ends, self.base);
+            let found = extreme(&mut self.parts[way.part].signal, way.ends, self.base);
             self.see(&found);
             return;
         }

@@ -17,7 +17,8 @@ use std::borrow::Cow;
 use nalgebra::Complex;
 
 use super::content::{Content, Fast, Ripples, unless_rounding};
-use super::extremes::Sampled;
+use super::extremes::{Sampled, Samples};
+use super::grid::Grid;
 use super::motion::Motion;
 use super::sums::Exponential;
 use crate::contact_equation::collocation::nodes::Nodes;
@@ -71,8 +72,9 @@ pub(in crate::contact_equation) struct Signal<'m, 'e> {
     motion: &'m Motion<'e>,
     sampled: &'m Sampled,
     interval: usize,
-    /// What it sees of the states of the linear part, where that stands.
+    /// What it sees of the states of the linear part, where that stands, and of those on its interval.
     row: Cow<'m, [Seen]>,
+    own: Cow<'m, [Seen]>,
     /// It is followed as the motion is: this gap, or its row.
     whole: Option<Whole>,
     offset: f64,
@@ -100,6 +102,7 @@ impl<'m, 'e> Signal<'m, 'e> {
             sampled,
             interval: sampled.interval,
             row: Cow::Borrowed(&[]),
+            own: Cow::Borrowed(&[]),
             whole: None,
             offset: 0.0,
             waves: Vec::new(),
@@ -145,6 +148,7 @@ impl<'m, 'e> Signal<'m, 'e> {
             _ => self.row.clone(),
         };
         self.put(content, &row);
+        self.own = row;
     }
 
     /// Puts a row on what the motion is made of.
@@ -218,6 +222,45 @@ impl<'m, 'e> Signal<'m, 'e> {
         self.ripples.sort();
     }
 
+    /// It at phases that are near enough to each other for what it sees most of.
+    pub(super) fn samples(&self) -> Samples<'m> {
+        let (motion, sampled) = (self.motion, self.sampled);
+        if self.whole.is_none()
+            && let Some(grid) = sampled.grid(motion, sampled.turns(motion, self))
+        {
+            return self.on(grid);
+        }
+        let (phases, states) = sampled.known();
+        let looks = phases.iter().zip(states);
+        let looks = looks.map(|(phase, states)| self.of_states(*phase, states));
+        let (values, rates) = looks.map(|look| (look.value, look.rate)).unzip();
+        Samples {
+            phases,
+            values,
+            rates,
+        }
+    }
+
+    /// On a grid.
+    fn on(&self, grid: &'m Grid) -> Samples<'m> {
+        let mut values = vec![self.offset; grid.phases.len()];
+        let mut rates = vec![0.0; grid.phases.len()];
+        for (index, (harmonic, amplitude)) in self.waves.iter().enumerate() {
+            let turns = harmonic * self.base();
+            let both = [&mut values[..], &mut rates[..]];
+            grid.add_wave(index, [amplitude.re, amplitude.im], turns, both);
+        }
+        for seen in &*self.own {
+            let both = [&mut values[..], &mut rates[..]];
+            grid.add_pair(self.motion, self.interval, seen, both);
+        }
+        Samples {
+            phases: &grid.phases,
+            values,
+            rates,
+        }
+    }
+
     /// Value and rate at a phase.
     pub(super) fn at(&mut self, x: f64) -> Look {
         let [value, rate] = match &self.whole {
@@ -277,7 +320,7 @@ impl<'m, 'e> Signal<'m, 'e> {
         let many = match self.whole {
             Some(Whole::Gap(_)) => true,
             Some(Whole::Row) => MANY * self.row.len() > blocks || blocks <= SHARED,
-            None => MANY * self.rings.len() > blocks + MANY,
+            None => self.is_forced() && MANY * self.rings.len() > blocks + MANY,
         };
         if many {
             let sampled = self.sampled;

@@ -58,7 +58,7 @@ impl Run<'_> {
         map: Option<&DMatrix<f64>>,
     ) -> Option<Steepness> {
         let accuracy = self.accuracy();
-        let extremes = self.equations.extremes.get()?.coordinates.clone();
+        let extremes = self.equations.extremes.coordinates.get()?.clone();
         let slope = at.tangent[at.tangent.len() - 1];
         let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
         let moved = at.u.iter().zip(&at.tangent);
@@ -155,28 +155,24 @@ impl Run<'_> {
         if let Accuracy::Output(_) = accuracy {
             return self.changed(point, &self.outputs(finer, value, false));
         }
-        let motions = self.equations.extremes.get();
-        apart(
-            finer,
-            motions.map_or(&[][..], |found| &found.coordinates),
-            accuracy,
-        )
+        let motions = self.equations.extremes.coordinates.get();
+        apart(finer, motions.map_or(&[][..], |found| found), accuracy)
     }
 
     /// How far peak-to-peak of a finer orbit is from that of this one where they have their extremes at different places: of two that are nearly as
     /// far, errors between nodes choose. Zero where an output is asked for, whose extremes are looked for in both.
     pub(in crate::contact_equation) fn other_extremes(&self, finer: &Equations) -> f64 {
-        let Some(found) = self.equations.extremes.get() else {
+        let Some(found) = self.equations.extremes.coordinates.get() else {
             return 0.0;
         };
         let asked = match self.accuracy() {
             Accuracy::Coordinate(one) => one..one + 1,
-            Accuracy::Coordinates => 0..found.coordinates.len(),
+            Accuracy::Coordinates => 0..found.len(),
             Accuracy::Output(_) => return 0.0,
         };
         let others = extremes_of(&Motion::of(finer), asked.clone());
         let extent = |[low, high]: &[Place; 2]| high.value - low.value;
-        let own = asked.filter_map(|coordinate| found.coordinates.get(coordinate));
+        let own = asked.filter_map(|coordinate| found.get(coordinate));
         let apart = own.zip(&others).map(|(a, b)| extent(b) - extent(a));
         apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
     }

@@ -40,7 +40,8 @@ pub(in crate::contact_equation) struct Compared {
 impl Compared {
     /// The states of the solution of the last pass, which may be smaller than those that its equations began with.
     pub(in crate::contact_equation) fn of(equations: &Equations, part: f64) -> Self {
-        let extremes = &Motion::of(equations).extremes().coordinates;
+        let motion = Motion::of(equations);
+        let extremes = motion.coordinate_extremes();
         let ranges = extremes.iter().map(|[low, high]| high.value - low.value);
         let size = 0.5 * ranges.fold(0.0, f64::max);
         Self {

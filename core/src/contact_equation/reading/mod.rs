@@ -70,7 +70,7 @@ impl Run<'_> {
         let motion = Motion::of(equations);
         let coordinates = equations.values.linear.positions.nrows();
         let rate = equations.values.base;
-        let found = motion.extremes().coordinates.iter();
+        let found = motion.coordinate_extremes().iter();
         let motions = found.map(|[minimum, maximum]| Extent {
             minimum: minimum.value,
             maximum: maximum.value,

@@ -81,7 +81,7 @@ impl Run<'_> {
         if !self.equations.is_in_order() {
             return Fits::No;
         }
-        let found = motion.extremes().gaps.concat();
+        let found = motion.gap_extremes().concat();
         let mut fits = self.pairs_fit(u);
         if self.is_watched_in_vain(u, &found) || !self.equations.is_sound() {
             fits = Fits::Soon;
@@ -222,7 +222,7 @@ impl Run<'_> {
     /// Whether an extreme of the last pass is beyond a level where the force jumps, without switches around it.
     pub(in crate::contact_equation) fn has_leapt(&self, u: &[f64]) -> bool {
         let motion = Motion::of(&self.equations);
-        let found = motion.extremes().gaps.concat();
+        let found = motion.gap_extremes().concat();
         let skeleton = &self.equations.skeleton;
         found.iter().any(|extreme| {
             let contact = extreme.contact;
@@ -305,7 +305,7 @@ impl Run<'_> {
             let around = (extreme.phase - first).rem_euclid(skeleton.length) <= second - first;
             let short = u[skeleton.slot(other)] <= 0.0;
             let near = || {
-                let others = &Motion::of(&self.equations).extremes().gaps[extreme.contact];
+                let others = &Motion::of(&self.equations).gap_extremes()[extreme.contact];
                 let same = SAME * room(extreme, others, skeleton.length).min(1.0);
                 apart.min(skeleton.length - apart) < same
             };

@@ -32,7 +32,7 @@ pub(in crate::contact_equation) fn transferred(
     }
     // Behind an end contacts may be in each other's place: what is beyond is seen there.
     let (known, extremes) = if old.recurrence().parts == 1 {
-        (crossings(old, u), motion.extremes().gaps.concat())
+        (crossings(old, u), motion.gap_extremes().concat())
     } else {
         seen(gaps, new.begin, new.length)
     };
@@ -129,7 +129,7 @@ pub(in crate::contact_equation) fn replanned(
         return Plan::sampled(gaps, skeleton.recurrence());
     }
     let mut crossings = crossings(skeleton, u);
-    let mut extremes = motion.extremes().gaps.clone();
+    let mut extremes = motion.gap_extremes().to_vec();
     if !motion.equations.is_in_order() {
         for of_gap in &mut extremes {
             alternate(of_gap);

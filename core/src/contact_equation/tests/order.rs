@@ -55,7 +55,7 @@ fn a_stretch_is_known_to_twelve_digits_by_32_nodes() {
         for (nodes, allowed) in ALLOWED {
             let (mut equations, u) = solved(&**system, *omega, nodes);
             equations.compute(&u, false);
-            let [low, high] = Motion::of(&equations).extremes().coordinates[0];
+            let [low, high] = Motion::of(&equations).coordinate_extremes()[0];
             let mut begin = vec![0.0; 2];
             Motion::of(&equations).at(0.0, &mut begin);
             let exact = shooting.clone().near_state(&begin).orbit(*omega).unwrap();

@@ -90,7 +90,8 @@ fn a_fast_mode_that_does_not_ring_costs_no_samples() {
     let (mut equations, u) = first(&system, None, omega, [16, 1]);
     equations.compute(&u, false);
     let motion = Motion::of(&equations);
-    motion.extremes();
+    motion.gap_extremes();
+    motion.coordinate_extremes();
     let samples: usize = motion.sampled().iter().map(Sampled::count).sum();
     assert!(samples < 200, "{samples}");
 }
@@ -161,7 +162,8 @@ fn what_decays_at_once_costs_no_samples() {
         let (mut equations, u) = first(&system, None, omega, [16, 1]);
         equations.compute(&u, false);
         let motion = Motion::of(&equations);
-        motion.extremes();
+        motion.gap_extremes();
+        motion.coordinate_extremes();
         let samples: usize = motion.sampled().iter().map(Sampled::count).sum();
         assert!(samples < 400, "{damping}: {samples}");
     }
