@@ -24,11 +24,11 @@ use crate::continuation::newton::Newton;
 use crate::event::EventKind;
 
 /// A step is divided until it is shorter than this part of its value, which takes fewer halvings than so many: what is so near to an event, as
-/// beside a touch, is one with it. Near a fold that is far along the branch.
+/// beside a touch, is one with it. Near a fold the value says nothing of that, since it goes as the square of the way; there it is halved as often.
 const HALVINGS: usize = 24;
 const SHORTEST: f64 = 1e-7;
 /// Where a part is divided: in the middle, or beside it if there is no orbit found there.
-const PLACES: [f64; 5] = [0.5, 0.3, 0.7, 0.1, 0.9];
+pub(super) const PLACES: [f64; 5] = [0.5, 0.3, 0.7, 0.1, 0.9];
 /// Logarithms of moduli that are as small are those of multipliers that cross together, as copies do.
 const TOGETHER: f64 = 1e-6;
 
@@ -53,12 +53,12 @@ impl Engine {
                 let located = changes(problem, &a, &b);
                 let events = problem.record().events.get(known..).unwrap_or_default();
                 let [from, to] = step_between([&a, &b]).parameters();
-                let hides = (to - from).abs() > SHORTEST * to.abs()
-                    && located.iter().any(|change| !is_modulus(change))
+                let is_long = (to - from).abs() > SHORTEST * to.abs();
+                let hides = located.iter().any(|change| !is_modulus(change))
                     && events.iter().any(|event| {
-                        // A fold may be beyond both ends.
+                        // A fold may be beyond both ends, and far from both along the branch however near they are in value.
                         let between = (event.point.value - from) * (event.point.value - to) <= 0.0;
-                        (between || event.kind == EventKind::Fold)
+                        (event.kind == EventKind::Fold || (is_long && between))
                             && hides(problem, [&a, &b], event)
                     });
                 let middle = hides

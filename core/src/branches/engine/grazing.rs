@@ -6,6 +6,7 @@
 //! ([`Bent::kept`]): the method reads the orbit there ([`BranchProblem::keep_touch`]).
 
 use super::Engine;
+use super::counted::PLACES;
 use super::grazing_search::{Approach, Reached, on_the_way};
 use super::grazing_within_step::Steps;
 use super::seen::Seen;
@@ -387,8 +388,10 @@ impl TouchSearch<'_> {
             before: &before.point,
             next: &next.point,
         };
-        let middle = inside(problem.equations(), newton, part, 0.5, self.options);
-        let middle = middle.as_ref().and_then(|point| Gaps::at(problem, point));
+        let middle = PLACES.into_iter().find_map(|place| {
+            let middle = inside(problem.equations(), newton, part, place, self.options)?;
+            Gaps::at(problem, &middle)
+        });
         let Some(middle) = middle else {
             return false;
         };
@@ -451,9 +454,8 @@ impl TouchSearch<'_> {
             farthest,
         };
         let options = self.options;
-        let located = approach
-            .close_in(problem, newton, options)
-            .or_else(|| on_the_way(problem, newton, step, found[0], options));
+        let located = approach.close_in(problem, newton, options);
+        let located = located.or_else(|| on_the_way(problem, newton, step, found[0], options));
         let Some(Reached {
             located,
             extreme,

@@ -111,3 +111,26 @@ fn motions_of_two_frequencies_between_two_stops() {
         assert!(off <= 3.0 * (forwards.1 + backwards.1) + 1e-14, "{off:e}");
     }
 }
+
+/// Between a fold at 0.336728985 and a touch at 0.33672986 a pair leaves the unit circle. Values next to the fold differ by less than that is away, when
+/// orbits do not.
+#[test]
+fn a_torus_beside_a_fold() {
+    let system = chain(
+        2,
+        0.035,
+        0.44,
+        &[(0, 1.0, 75.0, 0.47), (0, -1.0, 75.0, 0.47)],
+    );
+    let request = FrequencyResponse::of(&system).from(0.3).to(1.3);
+    let by_contact_equation = request.clone().by(ContactEquation::new()).run().unwrap();
+    let by_shooting = request.by(Shooting::new()).run().unwrap();
+    for branch in [by_contact_equation, by_shooting] {
+        let found = places(&branch, EventKind::NeimarkSacker, [0.3367, 0.3368]);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(
+            (found[0].0 - 0.336_729_050_726_9).abs() < 1e-12,
+            "{found:?}"
+        );
+    }
+}

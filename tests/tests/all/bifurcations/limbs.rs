@@ -13,6 +13,14 @@ hertzian::oscillator! {
     }
 }
 
+hertzian::oscillator! {
+    /// Gears with an error of their motion, in the gap
+    Kinematic(x) {
+        law mesh(gap) { gap > 1 => gap - 1, -1 <= gap <= 1 => 0, gap < -1 => gap + 1 }
+        ddot(x) + 0.104*dot(x) + mesh(x - 0.35*sin(omega*t)) = 0.19;
+    }
+}
+
 /// Values and errors of all events, in the order of their values.
 fn events(branch: &Branch) -> Vec<(EventKind, f64, f64)> {
     let events = branch.events.iter();
@@ -70,4 +78,10 @@ fn masses_between_two_equal_stops() {
         let stated = one.error.unwrap() + other.error.unwrap();
         assert!(off <= 3.0 * stated + 1e-13, "{off:e} {stated:e}");
     }
+}
+
+/// Backwards two minima of the gap reach the level in one step of the contact equation, in the middle of which no orbit is found.
+#[test]
+fn two_touches_of_a_gear() {
+    agrees(&Meshing {}, [0.4, 2.3]);
 }
