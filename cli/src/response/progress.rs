@@ -103,6 +103,9 @@ impl<'p> Seen<'p> {
             (Stage::Settling, Some(total)) => self
                 .progress
                 .update(|| format!("{count} of {total} motions, {varied} = {value:.6}")),
+            (Stage::Solving, Some(total)) => self
+                .progress
+                .update(|| format!("{count} of {total} states, {varied} = {value:.6}")),
             (Stage::Completing, Some(total)) => self
                 .progress
                 .update(|| format!("{count} of {total} orbits read off, {varied} = {value:.6}")),

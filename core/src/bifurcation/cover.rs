@@ -55,6 +55,8 @@ pub struct Settling {
     pub(super) patience: usize,
     /// Whether initial states are of all sizes.
     pub(super) wide: bool,
+    /// Whether orbits are solved for.
+    pub(super) solving: bool,
 }
 
 impl Default for Settling {
@@ -65,6 +67,7 @@ impl Default for Settling {
             longest: 4,
             patience: 500,
             wide: false,
+            solving: true,
         }
     }
 }
@@ -94,6 +97,14 @@ impl Settling {
         Self { wide: true, ..self }
     }
 
+    /// Without orbits that no motion settles to.
+    pub(super) fn motions_alone(self) -> Self {
+        Self {
+            solving: false,
+            ..self
+        }
+    }
+
     /// # Errors
     /// If an option cannot be used.
     pub(super) fn check(&self) -> Result<(), Error> {
@@ -103,6 +114,7 @@ impl Settling {
             longest,
             patience,
             wide: _,
+            solving: _,
         } = *self;
         validate::option("values", values as f64, 0.0..=1e5, "must be 100000 or less")?;
         for (name, count, most) in [
@@ -184,11 +196,10 @@ impl<M: OrbitMethod> Search<'_, M> {
         }
         for _ in 0..CHOSEN {
             let Some(value) = self.lacking() else {
-                break;
+                return;
             };
             self.settle(value, settling);
         }
-        self.scatter(settling, at);
     }
 
     /// Takes in the branch from the other end, unless it is known.
@@ -272,9 +283,7 @@ impl<M: OrbitMethod> Search<'_, M> {
     /// If no motion can be computed there.
     fn settled(&mut self, value: f64, settling: &Settling) -> Result<Settled, Error> {
         let (starts, map) = self.starts(value, settling.wide)?;
-        let facts = self.response.request.system.facts();
-        let order = map.order();
-        let forces = MULTIPLICATIONS / (PER_CONTACT * facts.contacts.len() + order * order);
+        let forces = self.most_forces();
         let patience = Patience {
             longest: settling.longest,
             periods: settling.patience,
@@ -282,7 +291,7 @@ impl<M: OrbitMethod> Search<'_, M> {
         };
         let first = self.first_states(value);
         let others = self.drawn..;
-        let others = others.map(|index| starts.draw(index).0);
+        let others = others.map(|index| starts.draw(index).state);
         let states: Vec<_> = first.chain(others).take(settling.starts).collect();
         self.drawn += settling.starts;
         let mut motions = Motions::new(map, starts.units, patience);
@@ -322,6 +331,13 @@ impl<M: OrbitMethod> Search<'_, M> {
             }
         }
         Ok(Settled { fates, orbits })
+    }
+
+    /// Evaluations of forces that one motion may take.
+    pub(super) fn most_forces(&self) -> usize {
+        let facts = self.response.request.system.facts();
+        let order = 2 * facts.coordinates.len();
+        MULTIPLICATIONS / (PER_CONTACT * facts.contacts.len() + order * order)
     }
 
     /// The symmetries that take motions into motions at a value.
@@ -403,7 +419,7 @@ impl<M: OrbitMethod> Search<'_, M> {
     }
 
     /// The state of the nearest orbit that is known, and rest.
-    fn first_states(&self, value: f64) -> impl Iterator<Item = Vec<f64>> {
+    pub(super) fn first_states(&self, value: f64) -> impl Iterator<Item = Vec<f64>> {
         let near = |point: &&Point| (point.value - value).abs();
         let branches = self.diagram.branches.iter();
         let points = branches.flat_map(|branch| &branch.branch.points);

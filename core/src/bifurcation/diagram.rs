@@ -29,7 +29,7 @@ pub struct Diagram {
     pub branches: Vec<DiagramBranch>,
     /// Bifurcations whose further branch was not followed, and why.
     pub omitted: Vec<Omitted>,
-    /// Attractors whose branch was not followed, and searches that failed: the value and why.
+    /// Orbits that were found and whose branch was not followed, and searches that failed: the value and why.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub missed: Vec<(f64, Reason)>,
     /// Where motions were followed until they settled, and what they settled to.
@@ -197,6 +197,9 @@ impl Diagram {
     }
 }
 
+/// Values of one orbit differ by this part of the range.
+const ROUNDING: f64 = 1e-6;
+
 /// Who looks at every orbit, and may ask to stop.
 pub(super) struct Observer<'v> {
     visit: See<'v>,
@@ -336,8 +339,9 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
 
     /// The branch that the orbit with these states at the beginnings of its periods lies on.
     pub(super) fn branch_of(&self, value: f64, states: &[Vec<f64>]) -> Option<usize> {
-        let contains =
-            |branch: &DiagramBranch| matching::contains(&self.response, branch, value, states);
+        let contains = |branch: &DiagramBranch| {
+            matching::contains(&self.response, &branch.branch, value, states)
+        };
         self.diagram.branches.iter().position(contains)
     }
 
@@ -390,11 +394,12 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             .max_points(self.points_left / 2);
         let branch = request.through_with(value, |progress| self.observer.see(progress))?;
         // With other harmonics a balance may have gone on from an orbit beside it.
-        if branch
-            .points
-            .iter()
-            .any(|point| point.value == value && matching::passes(point, states))
-        {
+        let rounding = ROUNDING * self.range;
+        let mut here = branch.points.iter();
+        let passes = here.any(|point| {
+            (point.value - value).abs() <= rounding && matching::passes(point, states)
+        });
+        if passes || matching::contains(&self.response, &branch, value, states) {
             return Ok(branch);
         }
         Err(Attempts::default().without_period(period, value).into())

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::diagram::DiagramBranch;
+use crate::branches::branch::Branch;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
 use crate::response::{FrequencyResponse, OrbitMethod};
@@ -50,7 +50,7 @@ fn visits(point: &Point, state: &[f64]) -> bool {
 /// Whether the orbit at a value with these states at the beginnings of its periods is on a branch.
 pub(super) fn contains<M: OrbitMethod>(
     response: &FrequencyResponse<M>,
-    branch: &DiagramBranch,
+    branch: &Branch,
     value: f64,
     states: &[Vec<f64>],
 ) -> bool {
@@ -63,7 +63,7 @@ pub(super) fn contains<M: OrbitMethod>(
         let near = shooting.period(states.len()).near_orbit(&near.orbit);
         near.orbit(value).is_ok_and(|found| passes(&found, states))
     };
-    match branch.branch.plainly_at(value) {
+    match branch.plainly_at(value) {
         // A series may not resolve a state.
         Ok(found) => found
             .iter()
@@ -74,15 +74,15 @@ pub(super) fn contains<M: OrbitMethod>(
 }
 
 /// Of every two neighbours on a branch between which it passes a value, the nearer one.
-pub(super) fn around(branch: &DiagramBranch, value: f64) -> impl Iterator<Item = &Point> {
+pub(super) fn around(branch: &Branch, value: f64) -> impl Iterator<Item = &Point> {
     let off = move |point: &Point| (point.value - value).abs();
     beside(branch, value).map(move |[a, b]| if off(a) < off(b) { a } else { b })
 }
 
 /// Every two neighbours on a branch between which it passes a value.
-pub(super) fn beside(branch: &DiagramBranch, value: f64) -> impl Iterator<Item = [&Point; 2]> {
+pub(super) fn beside(branch: &Branch, value: f64) -> impl Iterator<Item = [&Point; 2]> {
     let off = move |point: &Point| point.value - value;
-    let pairs = branch.branch.points.windows(2);
+    let pairs = branch.points.windows(2);
     let passing = pairs.filter(move |pair| off(&pair[0]) * off(&pair[1]) <= 0.0);
     passing.map(|pair| [&pair[0], &pair[1]])
 }

@@ -12,7 +12,6 @@ mod request;
 mod scatter;
 mod settle;
 mod solutions;
-
 mod starts;
 mod stretches;
 mod transient;

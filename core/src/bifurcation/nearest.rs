@@ -24,7 +24,7 @@ use crate::time::{FlowError, Tangent};
 
 /// Updates of Newton's method.
 const UPDATES: usize = 16;
-/// An update is no longer than this, in units.
+/// Its largest entry is no longer than this, in units.
 const LONGEST: f64 = 0.5;
 /// One that is shorter is the last.
 const SHORT: f64 = 1e-6;
@@ -32,8 +32,10 @@ const SHORT: f64 = 1e-6;
 const IDLE: usize = 4;
 /// States of one orbit that were found in two ways differ by less.
 const SAME: f64 = 1e-5;
-/// States of a branch are known to this, at least.
-const ROUGH: f64 = 1e-2;
+/// An orbit on a branch is as near as this to the straight way between its neighbours, as a part of how far these are apart; and states of a
+/// branch are known to this.
+const NEAR: f64 = 0.25;
+const ROUGH: f64 = 1e-3;
 
 /// An orbit, stable or not.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,9 +72,14 @@ impl Nearest {
         }
     }
 
-    /// Evaluations of forces so far.
-    pub(super) fn forces(&self) -> usize {
-        self.map.work().forces
+    /// Periods that were computed so far.
+    pub(super) fn periods(&self) -> u64 {
+        self.map.periods()
+    }
+
+    /// Entries of a state have other sizes from here on.
+    pub(super) fn measure_by(&mut self, units: &[f64]) {
+        self.units[..units.len()].copy_from_slice(units);
     }
 
     /// Moves a state over some periods at a value.
@@ -98,22 +105,23 @@ impl Nearest {
     ) -> Option<NearestOrbit> {
         let (state, value) = self.newton(guess, value, period, true).ok()??;
         let mut states = vec![state];
-        for index in 1..period {
+        for index in 1..=period {
             let mut next = states[index - 1].clone();
             self.map.map(&mut next).ok()?;
             if self.apart(&next, &states[0]) <= SAME {
-                // Rounding of a longer period is no shorter one.
-                return period
-                    .is_multiple_of(index)
-                    .then_some(NearestOrbit { value, states });
+                // Only by rounding does it return after other parts of the period.
+                let whole = period.is_multiple_of(index);
+                return whole.then_some(NearestOrbit { value, states });
             }
             states.push(next);
         }
-        Some(NearestOrbit { value, states })
+        // A short step beside a touch, where derivatives have no bound, is no sign of an orbit.
+        None
     }
 
     /// Whether an orbit lies between two neighbours on a branch, given by their values and states: whether Newton's method leads to it from
-    /// between them, and not from farther than they are apart.
+    /// between them, and that is much nearer than they are to each other. Where
+    /// that is not so it may lie there all the same.
     pub(super) fn is_between(
         &mut self,
         [(first, a), (second, b)]: [(f64, &[f64]); 2],
@@ -127,7 +135,7 @@ impl Nearest {
         };
         let entries = a.iter().zip(b);
         let guess: Vec<f64> = entries.map(|(a, b)| a + part * (b - a)).collect();
-        let far = self.apart(a, b) + ROUGH;
+        let far = NEAR * self.apart(a, b) + ROUGH;
         let is_near = |other: &Vec<f64>| self.apart(&guess, other) <= far;
         if !states.iter().any(is_near) {
             return false;
@@ -170,7 +178,7 @@ impl Nearest {
                 return Ok(None);
             };
             let step = q * solved;
-            let length = step.norm();
+            let length = step.amax();
             if !length.is_finite() {
                 return Ok(None);
             }
@@ -183,10 +191,7 @@ impl Nearest {
             for (x, d) in state.iter_mut().zip(&moved) {
                 *x -= d;
             }
-            value -= moved[order];
-            if !(self.range[0]..=self.range[1]).contains(&value) {
-                return Ok(None);
-            }
+            value = (value - moved[order]).clamp(self.range[0], self.range[1]);
             if length <= SHORT {
                 self.map.set(self.variable, value)?;
                 return Ok(Some((state, value)));

@@ -271,6 +271,9 @@ impl<M: OrbitMethod> Bifurcations<M> {
                 search.diagram.missed.push((value, reason));
             }
         }
+        if let Some(settling) = self.settling.as_ref().filter(|settling| settling.solving) {
+            search.scatter(settling, &self.settled_at);
+        }
         let mut diagram = search.diagram;
         if let Some(error) = none {
             if diagram.branches.is_empty() {

@@ -76,8 +76,9 @@ impl SolutionsAt {
 
 impl<M: OrbitMethod> FrequencyResponse<M> {
     /// All periodic solutions at these values of what is varied, as far as they are found: of the branch that [`run`](Self::run) gives; of
-    /// that from the other end of the range; of what begins on them at bifurcations; and of what motions settle to at the values
-    /// themselves. [`Solutions`] says at each value how many there are, which are stable, and what was searched: no search finds all for
+    /// that from the other end of the range; of what begins on them at bifurcations; of what motions settle to at the values themselves;
+    /// and of what Newton's method leads to around them. An orbit of a branch that cannot be computed at a value is in
+    /// [`Diagram::missed`]. [`Solutions`] says at each value how many there are, which are stable, and what was searched: no search finds all for
     /// sure.
     ///
     /// ```
@@ -100,13 +101,21 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     /// ```
     ///
     /// # Errors
-    /// As [`cover`](Self::cover), if there is no value or one is outside of the range, or an orbit of a branch cannot be computed there.
+    /// As [`cover`](Self::cover), and if a value is outside of the range.
     pub fn solutions(&self, values: &[f64]) -> Result<Solutions, Error> {
-        let diagram = self.searched("solutions", values, |_| ControlFlow::Continue(()))?;
-        let at = values.iter().map(|&value| diagram.solutions_at(value));
+        let mut diagram = self.searched("solutions", values, Settling::new(), |_| {
+            ControlFlow::Continue(())
+        })?;
+        let mut at = Vec::new();
+        for &value in values {
+            let (solutions, lost) = diagram.found_at(value);
+            at.push(solutions);
+            let lost = lost.into_iter().map(|error| (value, Reason::of(error)));
+            diagram.missed.extend(lost);
+        }
         Ok(Solutions {
             varied: self.request.varied(),
-            at: at.collect::<Result<_, _>>()?,
+            at,
             diagram,
         })
     }
@@ -119,6 +128,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         &self,
         name: &'static str,
         values: &[f64],
+        settling: Settling,
         visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Diagram, Error> {
         let [from, to] = self.request.range()?;
@@ -129,7 +139,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         let request = Bifurcations::starting_with(self.clone()).by(self.method.clone());
         let request = request.depth(DEPTH).margin(0.0);
         let request = request
-            .cover(Settling::new().starts(STARTS).wide())
+            .cover(settling.starts(STARTS).wide())
             .settled_at(values);
         request.run_with(visit)
     }
@@ -141,10 +151,21 @@ impl Diagram {
     /// # Errors
     /// If an orbit between two points of a branch cannot be computed.
     pub fn solutions_at(&self, value: f64) -> Result<SolutionsAt, Error> {
-        let mut orbits = Vec::new();
+        let (at, lost) = self.found_at(value);
+        lost.into_iter().next().map_or(Ok(at), Err)
+    }
+
+    /// The same, as far as its orbits can be computed, and why others cannot.
+    fn found_at(&self, value: f64) -> (SolutionsAt, Vec<Error>) {
+        let (mut orbits, mut lost) = (Vec::new(), Vec::new());
         for (branch, found) in self.branches.iter().enumerate() {
-            let points = found.branch.at(value)?.into_iter();
-            orbits.extend(points.map(|point| Solution { branch, point }));
+            match found.branch.at(value) {
+                Ok(points) => {
+                    let points = points.into_iter();
+                    orbits.extend(points.map(|point| Solution { branch, point }));
+                }
+                Err(error) => lost.push(error),
+            }
         }
         let searched = self
             .searched
@@ -152,11 +173,12 @@ impl Diagram {
             .filter(|searched| searched.value == value);
         let fates = searched.flat_map(|searched| &searched.fates);
         let restless = fates.filter(|fate| matches!(fate, Fate::Chaotic | Fate::Long));
-        Ok(SolutionsAt {
+        let at = SolutionsAt {
             value,
             orbits,
             restless: restless.count(),
-        })
+        };
+        (at, lost)
     }
 
     /// How many branches were not followed that are none of those that were, or their mirror images.
@@ -197,7 +219,7 @@ impl fmt::Display for Solutions {
         let motions: usize = searched.iter().map(|searched| searched.fates.len()).sum();
         writeln!(
             f,
-            "searched: {} branches, with what begins on them to depth {DEPTH}; {motions} motions at {} values of {varied}",
+            "searched: {} branches, with what begins on them to depth {DEPTH}; {motions} motions at {} values of {varied}, and orbits around them",
             branches.len(),
             searched.len()
         )?;

@@ -60,13 +60,25 @@ impl Around {
     }
 }
 
-/// Boxes at a value, and how many states were taken from them so far.
+/// Boxes at a value.
 #[derive(Debug, Clone)]
 pub(super) struct Starts {
     around: Vec<Around>,
     boxes: &'static [f64],
-    /// Sizes of the entries of a state.
+    /// Sizes of the entries of a state, of all orbits of the range.
     pub(super) units: Vec<f64>,
+}
+
+/// One of the states in the boxes.
+#[derive(Debug, Clone)]
+pub(super) struct Start {
+    pub(super) state: Vec<f64>,
+    /// Sizes of its entries, of the orbit that its box is around.
+    pub(super) units: Vec<f64>,
+    /// One of numbers from 0 to 1.
+    pub(super) part: f64,
+    /// How often all boxes were gone through before.
+    pub(super) turn: usize,
 }
 
 impl Starts {
@@ -83,18 +95,12 @@ impl Starts {
             reach.include_orbit(point);
             Around::of(&reach, omega)
         };
-        let local = branches.iter().flat_map(|branch| around(branch, value));
+        let local = branches
+            .iter()
+            .flat_map(|branch| around(&branch.branch, value));
         let mut all: Vec<Around> = local.map(alone).collect();
         let of_range = Around::of(reach, omega);
-        let units = (0..of_range.units.len()).map(|i| {
-            let local = all.iter().map(|around| around.units[i]).fold(0.0, f64::max);
-            if local > 0.0 {
-                local
-            } else {
-                of_range.units[i]
-            }
-        });
-        let units = units.collect();
+        let units = of_range.units.clone();
         all.push(of_range);
         Self {
             around: all,
@@ -103,16 +109,21 @@ impl Starts {
         }
     }
 
-    /// One of a sequence of states, and one of numbers from 0 to 1.
-    pub(super) fn draw(&self, index: usize) -> (Vec<f64>, f64) {
-        let count = self.around.len();
-        let Around { middle, units } = &self.around[index % count];
-        let size = self.boxes[index / count % self.boxes.len()];
+    /// One of a sequence of states.
+    pub(super) fn draw(&self, index: usize) -> Start {
+        let (sizes, count) = (self.boxes.len(), self.around.len());
+        let Around { middle, units } = &self.around[index / sizes % count];
+        let size = self.boxes[index % sizes];
         let mut parts = sequence(index, middle.len() + 1);
         let part = parts.next().map_or(0.5, |part| 0.5 * (1.0 + part));
         let entries = parts.zip(middle).zip(units);
         let state = entries.map(|((part, middle), unit)| middle + size * part * unit);
-        (state.collect(), part)
+        Start {
+            state: state.collect(),
+            units: units.iter().map(|unit| size.max(1.0) * unit).collect(),
+            part,
+            turn: index / (sizes * count),
+        }
     }
 }
 

@@ -79,6 +79,8 @@ pub enum Stage {
     Basin,
     /// It lets motions settle at a value, to find further branches: motions.
     Settling,
+    /// It solves for orbits from states around a value, to find further branches: states.
+    Solving,
     /// It looks for all solutions over two parameters, row by row: rows, of which the last is at this value of the second parameter.
     Map,
     /// It computes the variants of a study: variants.
@@ -96,6 +98,7 @@ impl std::fmt::Display for Stage {
             Self::Sweep => "sweep",
             Self::Basin => "basin",
             Self::Settling => "settling",
+            Self::Solving => "solving",
             Self::Map => "map",
             Self::Study => "study",
         })

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 pub use cell::{Cell, CellVerdict};
 
+use super::cover::Settling;
 use super::diagram::{Diagram, Reason};
 use super::solutions::Solution;
 use crate::branches::branch::{Branch, Model};
@@ -127,11 +128,12 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         for (row, &other) in others.iter().enumerate() {
             let request = self.with(second, other);
             let mut stopped = false;
-            let found = request.searched("map", values, |progress| {
-                let answer = visit(progress);
-                stopped |= answer.is_break();
-                answer
-            });
+            let found =
+                request.searched("map", values, Settling::new().motions_alone(), |progress| {
+                    let answer = visit(progress);
+                    stopped |= answer.is_break();
+                    answer
+                });
             // A row that was searched in part says too little.
             if stopped || self.request.cancel.is_cancelled() {
                 break;

@@ -14,10 +14,10 @@ hertzian::oscillator! {
 }
 
 hertzian::oscillator! {
-    /// Gears with an error of their motion, in the gap
-    Kinematic(x) {
-        law mesh(gap) { gap > 1 => gap - 1, -1 <= gap <= 1 => 0, gap < -1 => gap + 1 }
-        ddot(x) + 0.104*dot(x) + mesh(x - 0.35*sin(omega*t)) = 0.19;
+    /// Gears whose stiffness changes with two harmonics of the mesh
+    Meshing(x) {
+        law mesh(gap) { gap > 1.4 => gap - 1.4, -1.4 <= gap <= 1.4 => 0, gap < -1.4 => gap + 1.4 }
+        ddot(x) + 0.174*dot(x) + (1 + 0.062*cos(omega*t) + 0.18*cos(2*omega*t + 0.7))*mesh(x) = 0.29 + 0.065*omega^2*cos(omega*t);
     }
 }
 
