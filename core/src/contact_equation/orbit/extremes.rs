@@ -74,7 +74,17 @@ pub(super) struct Samples<'s> {
     pub(super) rates: Vec<f64>,
 }
 
-impl Samples<'_> {
+impl<'s> Samples<'s> {
+    /// Values with rates, one pair for each phase.
+    pub(super) fn of(phases: &'s [f64], looks: impl Iterator<Item = [f64; 2]>) -> Self {
+        let (values, rates) = looks.map(|[value, rate]| (value, rate)).unzip();
+        Self {
+            phases,
+            values,
+            rates,
+        }
+    }
+
     pub(super) fn look(&self, index: usize) -> Look {
         Look {
             x: self.phases[index],

@@ -225,19 +225,34 @@ impl<'m, 'e> Signal<'m, 'e> {
     /// It at phases that are near enough to each other for what it sees most of.
     pub(super) fn samples(&self) -> Samples<'m> {
         let (motion, sampled) = (self.motion, self.sampled);
-        if self.whole.is_none()
-            && let Some(grid) = sampled.grid(motion, sampled.turns(motion, self))
-        {
-            return self.on(grid);
+        if let Some(grid) = sampled.grid(motion, sampled.turns(motion, self)) {
+            return match self.whole {
+                None => self.on(grid),
+                // A gap that moves has no row.
+                Some(whole) => {
+                    let looks = grid.phases.iter().map(|x| self.followed(whole, *x));
+                    Samples::of(&grid.phases, looks)
+                }
+            };
         }
         let (phases, states) = sampled.known();
         let looks = phases.iter().zip(states);
         let looks = looks.map(|(phase, states)| self.of_states(*phase, states));
-        let (values, rates) = looks.map(|look| (look.value, look.rate)).unzip();
-        Samples {
-            phases,
-            values,
-            rates,
+        Samples::of(phases, looks.map(|look| [look.value, look.rate]))
+    }
+
+    /// Value and rate at a phase of what is followed as the motion is.
+    fn followed(&self, whole: Whole, x: f64) -> [f64; 2] {
+        match whole {
+            Whole::Gap(contact) => {
+                let base = self.motion.equations.values.base;
+                let [gap, rate] = self.motion.gap(contact, self.interval, x);
+                [gap, rate * base]
+            }
+            Whole::Row => {
+                let [value, rate] = self.motion.seen(&self.row, self.interval, x);
+                [value + self.offset, rate]
+            }
         }
     }
 
@@ -263,16 +278,8 @@ impl<'m, 'e> Signal<'m, 'e> {
 
     /// Value and rate at a phase.
     pub(super) fn at(&mut self, x: f64) -> Look {
-        let [value, rate] = match &self.whole {
-            Some(Whole::Gap(contact)) => {
-                let base = self.motion.equations.values.base;
-                let [gap, rate] = self.motion.gap(*contact, self.interval, x);
-                [gap, rate * base]
-            }
-            Some(Whole::Row) => {
-                let [value, rate] = self.motion.seen(&self.row, self.interval, x);
-                [value + self.offset, rate]
-            }
+        let [value, rate] = match self.whole {
+            Some(whole) => self.followed(whole, x),
             None => self.sum(x),
         };
         Look { x, value, rate }
