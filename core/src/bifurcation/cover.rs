@@ -46,7 +46,7 @@ const FIRST_PERIODS: usize = 50;
 ///
 /// By default 4 motions are followed at each value, for 500 periods, and values are only chosen where a search finds no stable orbit.
 /// Around values that are asked for orbits are also solved for, stable or not, from as many states at each: what lies on no known branch begins one,
-/// of [`Origin::Solved`]. That goes on until nothing new is found and no branch was met once only, eight times at most.
+/// of [`Origin::Solved`]. That goes on two to eight times, until the next state leads to a new branch with a probability of less than 1/200.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Settling {
     pub(super) values: usize,

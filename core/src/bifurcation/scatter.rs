@@ -12,7 +12,7 @@
 //! p = n / N                                                                                                     (1)
 //! ```
 //!
-//! (Good 1953, Biometrika 40, 237). Rounds follow each other until one finds nothing new and `n` is zero.
+//! (Good 1953, Biometrika 40, 237). Rounds follow each other until that is small.
 
 use std::ops::ControlFlow;
 
@@ -25,8 +25,10 @@ use crate::branches::progress::{Progress, Stage};
 use crate::response::OrbitMethod;
 use crate::time::stroboscope::Stroboscope;
 
-/// Rounds, at most.
-const ROUNDS: usize = 8;
+/// Rounds, at least and at most.
+const ROUNDS: [usize; 2] = [2, 8];
+/// There are no more where one state of so many leads to something new.
+const RARE: usize = 200;
 /// Values that were asked for one by one have surroundings of this part of the range, or less where there are many.
 const SURROUNDINGS: f64 = 0.05;
 /// Periods for which states are moved along, in turn.
@@ -47,11 +49,7 @@ struct Place {
 
 /// How many states led to each branch.
 #[derive(Debug, Default)]
-struct Met {
-    states: Vec<usize>,
-    /// Whether a branch was new since this was asked last.
-    new: bool,
-}
+struct Met(Vec<usize>);
 
 impl Met {
     /// By one state more, of each branch among these.
@@ -59,15 +57,16 @@ impl Met {
         branches.sort_unstable();
         branches.dedup();
         for branch in branches {
-            let count = self.states.len().max(branch + 1);
-            self.states.resize(count, 0);
-            self.states[branch] += 1;
+            let count = self.0.len().max(branch + 1);
+            self.0.resize(count, 0);
+            self.0[branch] += 1;
         }
     }
 
     /// Whether nothing new is likely, by (1).
-    fn is_all(&mut self) -> bool {
-        !std::mem::take(&mut self.new) && !self.states.contains(&1)
+    fn is_all(&self) -> bool {
+        let once = self.0.iter().filter(|states| **states == 1).count();
+        once * RARE <= self.0.iter().sum()
     }
 }
 
@@ -76,14 +75,15 @@ impl<M: OrbitMethod> Search<'_, M> {
     pub(super) fn scatter(&mut self, settling: &Settling, at: &[f64]) {
         let mut places = self.places(settling, at);
         let mut met = Met::default();
-        for _ in 0..ROUNDS {
+        let [least, most] = ROUNDS;
+        for round in 1..=most {
             for place in &mut places {
                 if let ControlFlow::Break(reason) = self.scatter_at(place, settling, &mut met) {
                     self.diagram.missed.push((place.value, reason));
                     return;
                 }
             }
-            if met.is_all() {
+            if round >= least && met.is_all() {
                 return;
             }
         }
@@ -144,9 +144,7 @@ impl<M: OrbitMethod> Search<'_, M> {
                     .as_ref()
                     .and_then(|(start, value)| nearest.orbit(&start.state, *value, period));
                 if let Some(orbit) = orbit {
-                    let known = self.diagram.branches.len();
                     branches.extend(self.take(&mut nearest, &orbit, place)?);
-                    met.new |= self.diagram.branches.len() > known;
                 }
             }
             met.add(branches);
