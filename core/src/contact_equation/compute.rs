@@ -9,6 +9,7 @@ use super::branch::resume_state::Rest;
 use super::equations::Equations;
 use super::equations::setting::Frame;
 use super::guess::Guess;
+use super::orbit;
 use super::orbit::gaps::Gaps;
 use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
 use super::reading::minimal_period::Compared;
@@ -293,27 +294,42 @@ fn untouched_like(problem: &ContactProblem, value: f64, recurrence: &Recurrence)
             motion.include(*x);
         }
     }
-    let ranges = motions.iter().map(|of| 0.5 * of.peak_to_peak());
-    let size = ranges.fold(0.0, f64::max);
-    if size == 0.0 {
-        return None;
-    }
     let gaps = Gaps {
         values: &values,
         at: &at,
         coordinates,
     };
     let plan = Plan::sampled(&gaps, recurrence);
+    let sampled = untouched_with(problem, value, &plan, &gaps, &motions)?;
+    // Steps along the branch are measured by the size that the orbit has, and not by how it was sampled.
+    let extremes = orbit::motion::Motion::of(&sampled.equations).coordinate_extremes();
+    for (motion, [minimum, maximum]) in motions.iter_mut().zip(extremes) {
+        motion.minimum = minimum.value;
+        motion.maximum = maximum.value;
+    }
+    untouched_with(problem, value, &plan, &gaps, &motions)
+}
+
+/// The same where coordinates have these extremes.
+fn untouched_with(
+    problem: &ContactProblem,
+    value: f64,
+    plan: &Plan,
+    gaps: &Gaps<'_>,
+    motions: &[Motion],
+) -> Option<First> {
+    let ranges = motions.iter().map(|of| 0.5 * of.peak_to_peak());
+    let size = ranges.fold(0.0, f64::max);
+    if size == 0.0 {
+        return None;
+    }
+    let middles = motions.iter().map(Motion::middle);
     let frame = Frame {
-        reference: motions
-            .iter()
-            .map(Motion::middle)
-            .chain(vec![0.0; coordinates])
-            .collect(),
+        reference: middles.chain(vec![0.0; motions.len()]).collect(),
         size,
         resolution: RESOLUTIONS[FIRST],
     };
-    let (mut equations, mut u) = plan.equations(&problem.setting, value, &gaps, &frame)?;
+    let (mut equations, mut u) = plan.equations(&problem.setting, value, gaps, &frame)?;
     if !is_untouched(&equations.skeleton) {
         return None;
     }
