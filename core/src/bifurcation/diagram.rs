@@ -17,7 +17,7 @@ use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::Stop;
 use crate::error::{Error, ErrorKind, chain};
 use crate::event::{EventKind, Side};
-use crate::response::{FrequencyResponse, OrbitMethod};
+use crate::response::{FrequencyResponse, OrbitMethod, OrbitMethodKind};
 use crate::shooting::Shooting;
 
 /// Branches of periodic orbits and how they are connected.
@@ -187,6 +187,16 @@ impl From<Vec<Branch>> for Diagram {
 }
 
 impl Diagram {
+    /// Where a branch begins on another one.
+    pub(super) fn begin(&self, branch: &DiagramBranch) -> Option<&Event> {
+        match branch.origin {
+            Origin::Event { branch, event, .. } => {
+                self.branches.get(branch)?.branch.events.get(event)
+            }
+            _ => None,
+        }
+    }
+
     /// All events of one kind, each with the number of its branch. A bifurcation is an event of the branch that goes on there
     /// with the same period, and of kind [`EventKind::BranchPoint`] on one that ends there.
     pub fn events(&self, kind: EventKind) -> impl Iterator<Item = (usize, &Event)> {
@@ -197,6 +207,8 @@ impl Diagram {
     }
 }
 
+/// Beyond so many unknowns of the balance an orbit is computed by shooting, which has few: their elimination takes the cube of their number.
+const MANY: usize = 150;
 /// Values of one orbit differ by this part of the range.
 const ROUNDING: f64 = 1e-6;
 
@@ -340,9 +352,22 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
     /// The branch that the orbit with these states at the beginnings of its periods lies on.
     pub(super) fn branch_of(&self, value: f64, states: &[Vec<f64>]) -> Option<usize> {
         let contains = |branch: &DiagramBranch| {
-            matching::contains(&self.response, &branch.branch, value, states)
+            let begin = self.diagram.begin(branch);
+            matching::contains(&self.response, &branch.branch, begin, value, states)
         };
         self.diagram.branches.iter().position(contains)
+    }
+
+    /// Whether orbits of a period have more unknowns by the balance, as far as its branches tell, than are solved for quickly.
+    fn is_long(&self, period: usize) -> bool {
+        let branches = self.diagram.branches.iter().map(|branch| &branch.branch);
+        let balanced =
+            branches.filter(|branch| branch.method() == Some(OrbitMethodKind::HarmonicBalance));
+        let mut orbits = balanced.flat_map(|branch| branch.points.iter().map(|point| &point.orbit));
+        orbits.any(|orbit| {
+            let harmonics = orbit.harmonics() * period / orbit.period.max(1);
+            orbit.coordinates() * (2 * harmonics + 1) > MANY
+        })
     }
 
     /// Takes in the branch through an orbit, given by its states at the beginnings of its periods, unless it is known; returns its number.
@@ -362,14 +387,14 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             return Ok(number);
         }
         self.may_go_on()?;
-        let request = self.response.clone();
-        let branch = match self.through(request, value, states) {
-            Err(error) if error.kind() != ErrorKind::Cancelled => {
-                let by_shooting = self.response.clone().by(Shooting::new());
-                // What the method that was asked for says.
-                self.through(by_shooting, value, states).map_err(|_| error)
-            }
-            found => found,
+        let asked = self.response.clone();
+        let by_shooting = asked.clone().by(Shooting::new());
+        let branch = if self.is_long(states.len()) {
+            let found = self.through(by_shooting, value, states);
+            or_else(found, || self.through(asked, value, states))
+        } else {
+            let found = self.through(asked, value, states);
+            or_else(found, || self.through(by_shooting, value, states))
         };
         self.add(origin, 0, branch.map_err(Reason::of)?);
         Ok(self.diagram.branches.len() - 1)
@@ -399,7 +424,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         let passes = here.any(|point| {
             (point.value - value).abs() <= rounding && matching::passes(point, states)
         });
-        if passes || matching::contains(&self.response, &branch, value, states) {
+        if passes || matching::contains(&self.response, &branch, None, value, states) {
             return Ok(branch);
         }
         Err(Attempts::default().without_period(period, value).into())
@@ -423,6 +448,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         if depth > self.depth {
             return Err(Reason::Depth);
         }
+        let by_shooting = branch.branch.method() == Some(OrbitMethodKind::Shooting);
         let doubles = event.kind == EventKind::PeriodDoubling;
         if event.point.orbit.period * if doubles { 2 } else { 1 } > self.longest {
             return Err(Reason::Period);
@@ -438,16 +464,14 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             if self.diagram.branches.len() >= self.most_branches || self.points_left < 2 {
                 return Err(Reason::Budget);
             }
-            let request = self.response.clone().max_points(self.points_left);
-            let branch =
-                match request.switch_with(&event, side, |progress| self.observer.see(progress)) {
-                    Ok(branch) => branch,
-                    Err(error) => {
-                        // The other side may begin all the same.
-                        failed = Some(error);
-                        continue;
-                    }
-                };
+            let branch = match self.switched(&event, side, by_shooting) {
+                Ok(branch) => branch,
+                Err(error) => {
+                    // The other side may begin all the same.
+                    failed = Some(error);
+                    continue;
+                }
+            };
             let origin = Origin::Event {
                 branch: number,
                 event: index,
@@ -461,6 +485,18 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             }
         }
         failed.map_or(Ok(()), |error| Err(Reason::of(error)))
+    }
+
+    /// The branch that begins at an event, by shooting if the event was found by it.
+    fn switched(&mut self, event: &Event, side: Side, by_shooting: bool) -> Result<Branch, Error> {
+        let asked = self.response.clone().max_points(self.points_left);
+        let mut see = |progress: Progress<'_>| self.observer.see(progress);
+        if !by_shooting {
+            return asked.switch_with(event, side, see);
+        }
+        let request = asked.clone().by(Shooting::new());
+        let found = request.switch_with(event, side, &mut see);
+        or_else(found, || asked.switch_with(event, side, see))
     }
 
     /// Another branch that passes the same crossing.
@@ -497,6 +533,17 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
                 || is_joint(branch.branch.begin, joints().next())
         });
         ends.map(|(number, _)| number).collect()
+    }
+}
+
+/// What another way finds where the first one did not, with what the first one says if that does not either.
+fn or_else(
+    found: Result<Branch, Error>,
+    other: impl FnOnce() -> Result<Branch, Error>,
+) -> Result<Branch, Error> {
+    match found {
+        Err(error) if error.kind() != ErrorKind::Cancelled => other().map_err(|_| error),
+        found => found,
     }
 }
 

@@ -224,7 +224,8 @@ impl<M: OrbitMethod> Search<'_, M> {
     /// the branch, which tells what this does not.
     fn passing(&self, nearest: &mut Nearest, orbit: &NearestOrbit) -> Option<usize> {
         self.diagram.branches.iter().position(|branch| {
-            let mut pairs = beside(&branch.branch, orbit.value);
+            let begin = self.diagram.begin(branch);
+            let mut pairs = beside(&branch.branch, begin, orbit.value);
             branch.period() == orbit.states.len()
                 && pairs.any(|pair| {
                     let [a, b] = pair.map(|point| point.orbit.state());

@@ -97,7 +97,7 @@ impl Starts {
         };
         let local = branches
             .iter()
-            .flat_map(|branch| around(&branch.branch, value));
+            .flat_map(|branch| around(&branch.branch, None, value));
         let mut all: Vec<Around> = local.map(alone).collect();
         let of_range = Around::of(reach, omega);
         let units = of_range.units.clone();

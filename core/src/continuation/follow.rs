@@ -145,6 +145,9 @@ pub(crate) struct Halted {
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) before: Option<Vec<f64>>,
     pub(crate) first: CurvePoint,
+    /// It has gone against its first direction.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(super) turned: bool,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) step: f64,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]

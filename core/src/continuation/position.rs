@@ -6,7 +6,7 @@ use super::stepper::Stepper;
 use crate::continuation::newton::{Newton, NewtonError};
 
 /// Points before the curve may close upon itself.
-const CLOSES_AFTER: usize = 10;
+const CLOSES_AFTER: usize = 2;
 
 /// An end of the range that is not reached by a step as short as this is not reached by shorter ones.
 const NEAREST: f64 = 1e-5;
@@ -22,6 +22,8 @@ pub(crate) struct Position {
     pub(super) point: CurvePoint,
     pub(super) previous: Option<CurvePoint>,
     first: CurvePoint,
+    /// A closed curve has gone against its first direction somewhere, since its tangents are zero in sum.
+    turned: bool,
     /// Number of points before the last one.
     count: usize,
     /// The last point is the end.
@@ -67,6 +69,7 @@ impl Position {
             point: halted.point,
             previous: halted.previous,
             first: halted.first,
+            turned: halted.turned,
             count: halted.count,
             ended: halted.ended,
         }
@@ -79,6 +82,7 @@ impl Position {
             first: point.clone(),
             point,
             previous: None,
+            turned: false,
             count: 0,
             ended: None,
         }
@@ -94,6 +98,7 @@ impl Position {
             return self.ended;
         }
         if let Some(from) = &self.previous
+            && self.turned
             && self.count > CLOSES_AFTER
             && self.stepper.closes(newton, &self.first, from, &self.point)
         {
@@ -102,6 +107,9 @@ impl Position {
         if self.count == 0 {
             self.first = self.point.clone();
         }
+        let Self { first, point, .. } = &self;
+        let norm = newton.norm();
+        self.turned |= norm.product(first.scale, &point.tangent, &first.tangent) < 0.0;
         if let Some(stop) = self.unbounded() {
             return Some(stop);
         }
@@ -181,6 +189,7 @@ impl Position {
             previous: self.previous.clone(),
             before: self.stepper.before.clone(),
             first: self.first.clone(),
+            turned: self.turned,
             step: self.stepper.step,
             largest: self.stepper.largest,
             count: self.count,
@@ -201,6 +210,7 @@ impl Position {
             previous: None,
             before: None,
             first: self.first,
+            turned: self.turned,
             step: steps.initial,
             largest: self.stepper.largest,
             count,

@@ -1,5 +1,6 @@
 //! Curves whose folds are known.
 
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use super::crossing::locate_crossing;
@@ -131,6 +132,84 @@ fn a_branch_that_turns_at_its_start_ends_on_the_other_limb() {
     assert!(last > fold && last - fold < 0.002, "{last}");
     assert_eq!(ends.len(), 1);
     assert!(ends[0].0 > 0.0 && ends[0].1 < 0.0, "{ends:?}");
+}
+
+/// `(x - 1)^2 + (lambda - 1/2)^2 = radius^2`: a curve that closes.
+struct Circle {
+    radius: f64,
+}
+
+impl Problem for Circle {
+    fn unknowns(&self) -> usize {
+        1
+    }
+
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
+        let [x, lambda] = [(u[0] - 1.0) / self.radius, (u[1] - 0.5) / self.radius];
+        residual[0] = x * x + lambda * lambda - 1.0;
+        if let Some(jacobian) = jacobian {
+            jacobian.core_mut().row_mut(0)[0] = 2.0 * x / self.radius;
+            jacobian.set_column(&[2.0 * lambda / self.radius]);
+        }
+    }
+
+    fn weights(&self, weights: &mut [f64]) {
+        weights[0] = 1.0;
+    }
+
+    fn is_mean(&self, _unknown: usize) -> bool {
+        false
+    }
+}
+
+/// Wherever it begins and however few steps it takes, a curve is gone round once.
+#[test]
+fn a_closed_curve_is_gone_round_once() {
+    for radius in [0.02, 0.05, 0.2] {
+        for index in 0..40 {
+            let begin = TAU * f64::from(index) / 40.0;
+            let mut problem = Circle { radius };
+            let mut newton = Newton::new(&problem);
+            let options = FollowOptions {
+                from: 0.0,
+                to: 1.0,
+                points: 1000,
+                steps: StepControl::default(),
+                newton: NewtonOptions {
+                    tolerance: 1e-9,
+                    iterations: 12,
+                    damped: false,
+                },
+            };
+            let near = vec![1.0 + radius * begin.cos(), 0.5 + radius * begin.sin()];
+            let mut angles = vec![begin];
+            let outcome = follow(
+                &mut problem,
+                &mut newton,
+                Start::Near(near),
+                options,
+                &mut |_, _, seen| {
+                    if let Visit::Point(at) | Visit::Again(at) = seen {
+                        angles.push((at.u[1] - 0.5).atan2(at.u[0] - 1.0));
+                    }
+                    ControlFlow::Continue(())
+                },
+            );
+            let turned = |pair: &[f64]| {
+                let turned = pair[1] - pair[0];
+                turned - TAU * (turned / TAU).round()
+            };
+            let turned: f64 = angles.windows(2).map(turned).sum();
+            assert!(
+                matches!(outcome, Ok(Outcome::Stopped(Stop::Closed))),
+                "{radius} {begin}"
+            );
+            assert!(
+                (TAU..1.15 * TAU).contains(&turned.abs()),
+                "{radius} {begin}: {turned}"
+            );
+        }
+    }
 }
 
 /// How much the curve that is followed bends in [`Crossed`].
