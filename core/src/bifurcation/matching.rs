@@ -196,10 +196,9 @@ mod tests {
                     .near_orbit(&point.orbit)
                     .orbit(value)
                     .expect("an orbit");
-                if orbit.orbit.states[0] == orbit.orbit.states[1] {
-                    continue;
-                }
-                let states: Vec<Vec<f64>> = orbit.orbit.states().map(<[f64]>::to_vec).collect();
+                let states = beginnings(&orbit.orbit);
+                assert_eq!(states.len(), 2);
+                assert!(!is_same_state(&orbit, &states[0], &states[1]));
                 assert!(contains(
                     &response,
                     &branch.branch,
