@@ -415,7 +415,7 @@ impl<M: OrbitMethod> Search<'_, M> {
                 from_rest(&mut map, omega).map_err(|reason| time::MotionError { value, reason })?
             }
         };
-        Ok((Starts::at(value, omega, branches, &reach, wide), map))
+        Ok((Starts::at(value, omega, &self.diagram, &reach, wide), map))
     }
 
     /// The state of the nearest orbit that is known, and rest.

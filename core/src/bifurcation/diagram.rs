@@ -11,14 +11,12 @@ use std::time::Duration;
 use super::cover::Searched;
 use super::matching;
 use crate::branches::branch::Branch;
-use crate::branches::error::Attempts;
 use crate::branches::point::Event;
 use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::Stop;
 use crate::error::{Error, ErrorKind, chain};
 use crate::event::{EventKind, Side};
-use crate::response::{FrequencyResponse, OrbitMethod, OrbitMethodKind};
-use crate::shooting::Shooting;
+use crate::response::{FrequencyResponse, OrbitMethod};
 
 /// Branches of periodic orbits and how they are connected.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -207,11 +205,6 @@ impl Diagram {
     }
 }
 
-/// Beyond so many unknowns of the balance an orbit is computed by shooting, which has few: their elimination takes the cube of their number.
-const MANY: usize = 150;
-/// Values of one orbit differ by this part of the range.
-const ROUNDING: f64 = 1e-6;
-
 /// Who looks at every orbit, and may ask to stop.
 pub(super) struct Observer<'v> {
     visit: See<'v>,
@@ -252,7 +245,7 @@ pub(super) struct Search<'v, M> {
     /// The range of the first branch.
     pub(super) asked: [f64; 2],
     /// Length of the range.
-    range: f64,
+    pub(super) range: f64,
     depth: usize,
     longest: usize,
     mirrored: bool,
@@ -358,78 +351,6 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         self.diagram.branches.iter().position(contains)
     }
 
-    /// Whether orbits of a period have more unknowns by the balance, as far as its branches tell, than are solved for quickly.
-    fn is_long(&self, period: usize) -> bool {
-        let branches = self.diagram.branches.iter().map(|branch| &branch.branch);
-        let balanced =
-            branches.filter(|branch| branch.method() == Some(OrbitMethodKind::HarmonicBalance));
-        let mut orbits = balanced.flat_map(|branch| branch.points.iter().map(|point| &point.orbit));
-        orbits.any(|orbit| {
-            let harmonics = orbit.harmonics() * period / orbit.period.max(1);
-            orbit.coordinates() * (2 * harmonics + 1) > MANY
-        })
-    }
-
-    /// Takes in the branch through an orbit, given by its states at the beginnings of its periods, unless it is known; returns its number.
-    ///
-    /// # Errors
-    /// Why it was not followed.
-    pub(super) fn add_orbit(
-        &mut self,
-        origin: Origin,
-        value: f64,
-        states: &[Vec<f64>],
-    ) -> Result<usize, Reason> {
-        if self.observer.interrupted {
-            return Err(Reason::Interrupted);
-        }
-        if let Some(number) = self.branch_of(value, states) {
-            return Ok(number);
-        }
-        self.may_go_on()?;
-        let asked = self.response.clone();
-        let by_shooting = asked.clone().by(Shooting::new());
-        let branch = if self.is_long(states.len()) {
-            let found = self.through(by_shooting, value, states);
-            or_else(found, || self.through(asked, value, states))
-        } else {
-            let found = self.through(asked, value, states);
-            or_else(found, || self.through(by_shooting, value, states))
-        };
-        self.add(origin, 0, branch.map_err(Reason::of)?);
-        Ok(self.diagram.branches.len() - 1)
-    }
-
-    /// The branch through the orbit with these states.
-    fn through<N: OrbitMethod>(
-        &mut self,
-        request: FrequencyResponse<N>,
-        value: f64,
-        states: &[Vec<f64>],
-    ) -> Result<Branch, Error> {
-        let period = states.len();
-        let request = request.period(period).near_state(&states[0]);
-        let orbit = request.orbit(value)?;
-        if !matching::passes(&orbit, states) {
-            return Err(Attempts::default().without_period(period, value).into());
-        }
-        // Each of two parts may have half.
-        let request = request
-            .near_orbit(&orbit.orbit)
-            .max_points(self.points_left / 2);
-        let branch = request.through_with(value, |progress| self.observer.see(progress))?;
-        // With other harmonics a balance may have gone on from an orbit beside it.
-        let rounding = ROUNDING * self.range;
-        let mut here = branch.points.iter();
-        let passes = here.any(|point| {
-            (point.value - value).abs() <= rounding && matching::passes(point, states)
-        });
-        if passes || matching::contains(&self.response, &branch, None, value, states) {
-            return Ok(branch);
-        }
-        Err(Attempts::default().without_period(period, value).into())
-    }
-
     fn follow(&mut self, number: usize, index: usize) -> Result<(), Reason> {
         let branch = &self.diagram.branches[number];
         let (depth, mirrored) = (branch.depth + 1, branch.mirrored);
@@ -448,7 +369,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         if depth > self.depth {
             return Err(Reason::Depth);
         }
-        let by_shooting = branch.branch.method() == Some(OrbitMethodKind::Shooting);
+        let found_by = branch.branch.method();
         let doubles = event.kind == EventKind::PeriodDoubling;
         if event.point.orbit.period * if doubles { 2 } else { 1 } > self.longest {
             return Err(Reason::Period);
@@ -464,7 +385,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             if self.diagram.branches.len() >= self.most_branches || self.points_left < 2 {
                 return Err(Reason::Budget);
             }
-            let branch = match self.switched(&event, side, by_shooting) {
+            let branch = match self.switched(&event, side, found_by) {
                 Ok(branch) => branch,
                 Err(error) => {
                     // The other side may begin all the same.
@@ -485,18 +406,6 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             }
         }
         failed.map_or(Ok(()), |error| Err(Reason::of(error)))
-    }
-
-    /// The branch that begins at an event, by shooting if the event was found by it.
-    fn switched(&mut self, event: &Event, side: Side, by_shooting: bool) -> Result<Branch, Error> {
-        let asked = self.response.clone().max_points(self.points_left);
-        let mut see = |progress: Progress<'_>| self.observer.see(progress);
-        if !by_shooting {
-            return asked.switch_with(event, side, see);
-        }
-        let request = asked.clone().by(Shooting::new());
-        let found = request.switch_with(event, side, &mut see);
-        or_else(found, || asked.switch_with(event, side, see))
     }
 
     /// Another branch that passes the same crossing.
@@ -533,17 +442,6 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
                 || is_joint(branch.branch.begin, joints().next())
         });
         ends.map(|(number, _)| number).collect()
-    }
-}
-
-/// What another way finds where the first one did not, with what the first one says if that does not either.
-fn or_else(
-    found: Result<Branch, Error>,
-    other: impl FnOnce() -> Result<Branch, Error>,
-) -> Result<Branch, Error> {
-    match found {
-        Err(error) if error.kind() != ErrorKind::Cancelled => other().map_err(|_| error),
-        found => found,
     }
 }
 

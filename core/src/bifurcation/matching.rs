@@ -11,6 +11,8 @@ use crate::shooting::Shooting;
 
 /// Values of one event, found on two branches, differ by no more than this part of the range, or by their stated errors.
 const SAME: f64 = 1e-6;
+/// What is between the end of a branch and an event is no farther from the end than the event, to this factor.
+const BEYOND: f64 = 1.5;
 /// Stated errors are heeded up to this part of the range.
 const LARGEST: f64 = 1e-3;
 
@@ -60,71 +62,120 @@ pub(super) fn contains<M: OrbitMethod>(
         return false;
     }
     // From an orbit of the branch at this very value nothing else is near; from one beside it Newton's method may leave the branch.
-    let is_near = |near: &Point| {
+    let near = |near: &Point| {
         let shooting = response.clone().by(Shooting::new()).stability(false);
         let near = shooting.period(states.len()).near_orbit(&near.orbit);
-        near.orbit(value).is_ok_and(|found| passes(&found, states))
+        let found = near.orbit(value).ok();
+        found.filter(|found| passes(found, states))
     };
     match branch.plainly_at(value) {
         // A series may not resolve a state.
         Ok(found) => {
+            let mut ends = at_ends(branch, begin, value);
             found
                 .iter()
-                .any(|found| passes(found, states) || is_near(found))
-                || at_ends(branch, begin, value).any(is_near)
+                .any(|found| passes(found, states) || near(found).is_some())
+                || ends.any(|end| near(end.point).is_some_and(|found| end.reaches(&found)))
         }
         // An orbit between two others is lost.
-        Err(_) => around(branch, begin, value).any(is_near),
+        Err(_) => around(branch, begin, value).any(|point| near(point).is_some()),
     }
 }
 
-/// The points of a branch that are nearest to where it passes a value: of every two neighbours the nearer one, and its ends.
+/// The first or the last point of a branch, beside the event where it begins on another one or joins it, if that is known.
+struct End<'b> {
+    point: &'b Point,
+    event: Option<&'b Point>,
+}
+
+impl End<'_> {
+    /// Whether an orbit is no farther from the end than the event is. Where that is not known, what an orbit has beside one of a shorter period tells: it
+    /// vanishes at the event.
+    fn reaches(&self, found: &Point) -> bool {
+        let whole = self.event.map_or_else(
+            || {
+                let all = beginnings(&self.point.orbit);
+                let apart = all.iter().map(|other| apart(self.point, &all[0], other));
+                if all.len() > 1 {
+                    apart.fold(0.0, f64::max)
+                } else {
+                    self.point.size()
+                }
+            },
+            |event| apart(self.point, &self.point.orbit.state(), &event.orbit.state()),
+        );
+        apart(self.point, &self.point.orbit.state(), &found.orbit.state()) <= BEYOND * whole
+    }
+}
+
+/// The points of a branch that are nearest to where it passes a value: of every two neighbours the nearer one, and an end if the value is between it and its event.
 pub(super) fn around<'b>(
     branch: &'b Branch,
     begin: Option<&'b Event>,
     value: f64,
 ) -> impl Iterator<Item = &'b Point> {
     let off = move |point: &Point| (point.value - value).abs();
-    let pairs = branch.points.windows(2).map(|pair| [&pair[0], &pair[1]]);
-    let passing = pairs.filter(move |pair| is_between(pair.map(|point| point.value), value));
-    let nearer = passing.map(move |[a, b]| if off(a) < off(b) { a } else { b });
-    nearer.chain(at_ends(branch, begin, value))
+    let nearer = neighbours(branch, value).map(move |[a, b]| if off(a) < off(b) { a } else { b });
+    nearer.chain(at_ends(branch, begin, value).map(|end| end.point))
 }
 
-/// The first point of a branch if a value is between it and where the branch begins at another one, the last if it is between that and where it
-/// joins another one.
+/// The ends of a branch if a value is between them and where they begin on another branch or join it.
 fn at_ends<'b>(
     branch: &'b Branch,
-    begin: Option<&Event>,
+    begin: Option<&'b Event>,
     value: f64,
-) -> impl Iterator<Item = &'b Point> {
+) -> impl Iterator<Item = End<'b>> {
     let joined = |end: Option<Stop>| match end {
         Some(Stop::Joined { value, .. }) => Some(value),
         _ => None,
     };
-    let begin = begin.map(|event| event.point.value);
-    let first = (branch.points.first(), begin.or(joined(branch.begin)));
-    let last = (branch.points.last(), joined(Some(branch.stopped)));
-    [first, last].into_iter().filter_map(move |(point, end)| {
-        let point = point?;
-        is_between([point.value, end?], value).then_some(point)
+    let ends = [
+        (
+            branch.points.first(),
+            first_event(branch, begin),
+            joined(branch.begin),
+        ),
+        (
+            branch.points.last(),
+            last_event(branch),
+            joined(Some(branch.stopped)),
+        ),
+    ];
+    ends.into_iter().filter_map(move |(point, event, joined)| {
+        let (point, event) = (point?, event.map(|event| &event.point));
+        let end = event.map(|event| event.value).or(joined)?;
+        is_between([point.value, end], value).then_some(End { point, event })
     })
 }
 
+/// The event before the first point of a branch, on the branch where it begins or on itself.
+fn first_event<'b>(branch: &'b Branch, begin: Option<&'b Event>) -> Option<&'b Event> {
+    begin.or_else(|| branch.events.iter().find(|event| event.after == 0))
+}
+
+/// The event behind the last point of a branch.
+fn last_event(branch: &Branch) -> Option<&Event> {
+    let behind = |event: &&Event| event.after >= branch.points.len();
+    branch.events.iter().rfind(behind)
+}
+
 /// Every two neighbours on a branch between which it passes a value: points of it, the first and the event where it begins, the last and the event
-/// where it joins another one.
+/// where it joins another one, which a branch of the balance does not have.
 pub(super) fn beside<'b>(
     branch: &'b Branch,
     begin: Option<&'b Event>,
     value: f64,
 ) -> impl Iterator<Item = [&'b Point; 2]> {
-    let (points, events) = (&branch.points, &branch.events);
-    let before = begin.or_else(|| events.iter().find(|event| event.after == 0));
-    let behind = events.iter().rfind(|event| event.after == points.len());
-    let first = before.and_then(|event| Some([&event.point, points.first()?]));
-    let last = behind.and_then(|event| Some([points.last()?, &event.point]));
-    let pairs = points.windows(2).map(|pair| [&pair[0], &pair[1]]);
-    let pairs = first.into_iter().chain(pairs).chain(last);
+    let first = || Some([&first_event(branch, begin)?.point, branch.points.first()?]);
+    let last = || Some([branch.points.last()?, &last_event(branch)?.point]);
+    let ends = [first(), last()].into_iter().flatten();
+    let ends = ends.filter(move |pair| is_between(pair.map(|point| point.value), value));
+    neighbours(branch, value).chain(ends)
+}
+
+/// Every two points of a branch that follow each other and between which it passes a value.
+fn neighbours(branch: &Branch, value: f64) -> impl Iterator<Item = [&Point; 2]> {
+    let pairs = branch.points.windows(2).map(|pair| [&pair[0], &pair[1]]);
     pairs.filter(move |pair| is_between(pair.map(|point| point.value), value))
 }
 
@@ -143,13 +194,17 @@ pub(super) fn passes(point: &Point, states: &[Vec<f64>]) -> bool {
 
 /// Whether two states are the same beside the size of an orbit.
 fn is_same_state(point: &Point, one: &[f64], other: &[f64]) -> bool {
-    let size = 2.0 * point.size();
+    // At a branch point states are known to the root of what the value is known to.
+    apart(point, one, other) <= SAME.sqrt() * 2.0 * point.size()
+}
+
+/// The largest difference of two states of an orbit's frequency, rates as coordinates.
+fn apart(point: &Point, one: &[f64], other: &[f64]) -> f64 {
     let n = other.len() / 2;
-    let mut pairs = one.iter().zip(other).enumerate();
-    pairs.all(|(i, (x, y))| {
+    let pairs = one.iter().zip(other).enumerate();
+    pairs.fold(0.0, |most: f64, (i, (x, y))| {
         let unit = if i < n { 1.0 } else { point.orbit.omega };
-        // At a branch point states are known to the root of what the value is known to.
-        (x - y).abs() <= SAME.sqrt() * size * unit
+        most.max((x - y).abs() / unit)
     })
 }
 

@@ -5,6 +5,7 @@ pub mod backbone;
 mod cover;
 pub(crate) mod diagram;
 pub(crate) mod error;
+mod followed;
 pub(crate) mod map;
 mod matching;
 mod nearest;

@@ -207,14 +207,7 @@ impl Nearest {
         period: usize,
     ) -> Result<(Vec<f64>, DMatrix<f64>), FlowError> {
         let order = state.len();
-        self.tangent.columns.fill(0.0);
-        for i in 0..order {
-            self.tangent.columns[i * order + i] = 1.0;
-        }
-        let mut image = state.to_vec();
-        for _ in 0..period {
-            self.map.map_with(&mut image, &mut self.tangent)?;
-        }
+        let image = self.map.linearised(state, period, &mut self.tangent)?;
         let columns = &self.tangent.columns;
         let units = &self.units;
         let matrix = DMatrix::from_fn(order, order + 1, |i, j| {

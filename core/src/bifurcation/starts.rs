@@ -4,7 +4,7 @@
 //! sizes lie around each orbit that known branches have at the value, and around what all of them reach in the range; points of the additive
 //! sequence of Roberts (2018), which fills a box evenly, are in each of them in turn.
 
-use super::diagram::DiagramBranch;
+use super::diagram::{Diagram, DiagramBranch};
 use super::matching::around;
 use crate::branches::point::Point;
 
@@ -83,21 +83,15 @@ pub(super) struct Start {
 
 impl Starts {
     /// Around orbits of some branches at a value, and around a reach.
-    pub(super) fn at(
-        value: f64,
-        omega: f64,
-        branches: &[DiagramBranch],
-        reach: &Reach,
-        wide: bool,
-    ) -> Self {
+    pub(super) fn at(value: f64, omega: f64, diagram: &Diagram, reach: &Reach, wide: bool) -> Self {
         let alone = |point: &Point| {
             let mut reach = Reach::new(reach.0.len());
             reach.include_orbit(point);
             Around::of(&reach, omega)
         };
-        let local = branches
-            .iter()
-            .flat_map(|branch| around(&branch.branch, None, value));
+        let branches = diagram.branches.iter();
+        let local =
+            branches.flat_map(|branch| around(&branch.branch, diagram.begin(branch), value));
         let mut all: Vec<Around> = local.map(alone).collect();
         let of_range = Around::of(reach, omega);
         let units = of_range.units.clone();

@@ -146,7 +146,6 @@ pub(crate) struct Halted {
     pub(crate) before: Option<Vec<f64>>,
     pub(crate) first: CurvePoint,
     /// It has gone against its first direction.
-    #[cfg_attr(feature = "serde", serde(default))]
     pub(super) turned: bool,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) step: f64,

@@ -6,6 +6,7 @@ pub(crate) mod jacobian;
 pub(crate) mod newton;
 pub(crate) mod statistics;
 
+mod closing;
 pub(crate) mod crossing;
 pub(crate) mod follow;
 pub(crate) mod locate;

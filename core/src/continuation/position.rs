@@ -1,12 +1,10 @@
 //! Where a walk along a curve is, how it begins, and when it ends.
 
+use super::closing::closes;
 use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop};
 use super::problem::Problem;
 use super::stepper::Stepper;
 use crate::continuation::newton::{Newton, NewtonError};
-
-/// Points before the curve may close upon itself.
-const CLOSES_AFTER: usize = 2;
 
 /// An end of the range that is not reached by a step as short as this is not reached by shorter ones.
 const NEAREST: f64 = 1e-5;
@@ -22,7 +20,7 @@ pub(crate) struct Position {
     pub(super) point: CurvePoint,
     pub(super) previous: Option<CurvePoint>,
     first: CurvePoint,
-    /// A closed curve has gone against its first direction somewhere, since its tangents are zero in sum.
+    /// It has gone against its first direction, as every closed curve does somewhere: its tangents are zero in sum.
     turned: bool,
     /// Number of points before the last one.
     count: usize,
@@ -99,8 +97,7 @@ impl Position {
         }
         if let Some(from) = &self.previous
             && self.turned
-            && self.count > CLOSES_AFTER
-            && self.stepper.closes(newton, &self.first, from, &self.point)
+            && closes(newton, &self.first, from, &self.point)
         {
             return Some(Stop::Closed);
         }

@@ -8,8 +8,6 @@ use crate::continuation::newton::{Border, Newton, NewtonError};
 
 /// Least scale of what oscillates, in sizes of what rounding makes of an update.
 const ROUNDINGS: f64 = 1e3;
-/// The way between two points by a third on the arc between them is longer than the chord by this factor at most: by 8 percent on a quarter of a circle.
-const DETOUR: f64 = 1.1;
 
 /// What makes the steps; its buffers are reused.
 pub(super) struct Stepper {
@@ -352,32 +350,6 @@ impl Stepper {
             }
         }
         Ok((point, Some(stop)))
-    }
-
-    /// Whether the last step passed the first point in the first direction: it lies nearly on the way between the ends of the step.
-    pub(super) fn closes(
-        &self,
-        newton: &Newton,
-        first: &CurvePoint,
-        from: &CurvePoint,
-        to: &CurvePoint,
-    ) -> bool {
-        let norm = newton.norm();
-        let along = |a: &CurvePoint| {
-            let difference: Vec<f64> = first.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
-            (
-                norm.product(first.scale, &difference, &first.tangent),
-                norm.length(first.scale, &difference),
-            )
-        };
-        let ((ahead, far), (behind, near)) = (along(from), along(to));
-        let step: Vec<f64> = to.u.iter().zip(&from.u).map(|(x, y)| x - y).collect();
-        let way = far + near;
-        ahead > 0.0
-            && behind <= 0.0
-            && way < 2.0 * self.options.steps.largest
-            && way < DETOUR * norm.length(first.scale, &step)
-            && norm.product(first.scale, &from.tangent, &first.tangent) > 0.0
     }
 }
 

@@ -181,12 +181,21 @@ fn a_closed_curve_is_gone_round_once() {
                     damped: false,
                 },
             };
-            let near = vec![1.0 + radius * begin.cos(), 0.5 + radius * begin.sin()];
+            let (sin, cos) = begin.sin_cos();
+            let first = CurvePoint {
+                u: vec![1.0 + radius * cos, 0.5 + radius * sin],
+                tangent: vec![-sin, cos],
+                scale: Scale {
+                    oscillation: 1.0,
+                    mean: 1.0,
+                    parameter: 1.0,
+                },
+            };
             let mut angles = vec![begin];
             let outcome = follow(
                 &mut problem,
                 &mut newton,
-                Start::Near(near),
+                Start::Along(Box::new(first)),
                 options,
                 &mut |_, _, seen| {
                     if let Visit::Point(at) | Visit::Again(at) = seen {

@@ -39,6 +39,10 @@ impl Follow for HarmonicBalance {
         Self { accuracy, ..self }
     }
 
+    fn is_balance(&self, _request: &Request) -> bool {
+        true
+    }
+
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
         let aside = Asked::of(request, self).aside(value)?;
         let request = Request {

@@ -263,6 +263,17 @@ impl Chosen {
         }
     }
 
+    /// What is chosen for a request, unless the balance is wanted.
+    fn choice(&self, request: &Request) -> Choice {
+        // More nodes do not resolve an output that vanishes but for rounding, and as many as there may be are asked for.
+        let of_output = matches!(self.balance.accuracy, Accuracy::Output(_));
+        if self.by_balance || of_output {
+            Choice::HarmonicBalance
+        } else {
+            Choice::within(request)
+        }
+    }
+
     /// What the methods find that fit, or the balance alone.
     fn by_these<T>(
         &self,
@@ -270,13 +281,7 @@ impl Chosen {
         find: impl FnOnce(&dyn Follow) -> Result<T, Error>,
     ) -> Result<T, Error> {
         let accuracy = self.balance.accuracy;
-        // More nodes do not resolve an output that vanishes but for rounding, and as many as there may be are asked for.
-        let of_output = matches!(accuracy, Accuracy::Output(_));
-        let choice = if self.by_balance || of_output {
-            Choice::HarmonicBalance
-        } else {
-            Choice::within(request)
-        };
+        let choice = self.choice(request);
         // With multipliers the other methods find all that happens.
         let balance = if request.stability {
             self.balance.for_diagram()
@@ -310,6 +315,10 @@ impl Follow for Chosen {
             balance: self.balance.accurate_in(accuracy),
             ..self
         }
+    }
+
+    fn is_balance(&self, request: &Request) -> bool {
+        self.choice(request) == Choice::HarmonicBalance
     }
 
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {

@@ -63,6 +63,11 @@ mod sealed {
         where
             Self: Sized;
 
+        /// Whether unknowns are harmonics.
+        fn is_balance(&self, _request: &Request) -> bool {
+            false
+        }
+
         /// The one orbit at a value.
         fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error>;
 

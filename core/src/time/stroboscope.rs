@@ -131,6 +131,27 @@ impl Stroboscope {
         self.advance(state, Some(tangent), None)
     }
 
+    /// The image of a state under some maps; the tangent comes out as the derivatives of that by the state, and by the parameters that it has.
+    ///
+    /// # Errors
+    /// If the motion cannot be continued.
+    pub(crate) fn linearised(
+        &mut self,
+        state: &[f64],
+        times: usize,
+        tangent: &mut Tangent,
+    ) -> Result<Vec<f64>, FlowError> {
+        tangent.columns.fill(0.0);
+        for i in 0..state.len() {
+            tangent.columns[i * state.len() + i] = 1.0;
+        }
+        let mut image = state.to_vec();
+        for _ in 0..times {
+            self.map_with(&mut image, tangent)?;
+        }
+        Ok(image)
+    }
+
     /// Maps a state, and everything that a flow can move and show with it.
     pub(crate) fn advance(
         &mut self,

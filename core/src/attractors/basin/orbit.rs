@@ -184,14 +184,7 @@ impl Finder {
         period: usize,
     ) -> Result<(Vec<f64>, DMatrix<f64>), FlowError> {
         let order = state.len();
-        self.tangent.columns.fill(0.0);
-        for i in 0..order {
-            self.tangent.columns[i * order + i] = 1.0;
-        }
-        let mut image = state.to_vec();
-        for _ in 0..period {
-            map.map_with(&mut image, &mut self.tangent)?;
-        }
+        let image = map.linearised(state, period, &mut self.tangent)?;
         let jacobian = DMatrix::from_column_slice(order, order, &self.tangent.columns);
         Ok((image, jacobian))
     }
