@@ -160,6 +160,9 @@ impl<M: OrbitMethod> Bifurcations<M> {
         /// [`Diagram::searched`] says what was searched and found, [`Diagram::uncovered`] where there is no orbit. What begins on the mirror
         /// image of a branch is followed like any other.
         ///
+        /// Where the balance is asked for, orbits of several periods with many harmonics are followed by shooting, and so is what begins on their branches:
+        /// [`Branch::method`](crate::Branch::method) says by what.
+        ///
         /// What exists and is not met by any of these is not found: more [values](Settling::values) and
         /// [initial states](Settling::starts) find more.
         ///
