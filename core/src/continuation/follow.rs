@@ -274,6 +274,9 @@ pub(crate) fn follow_until_stuck<P: AsProblem + ?Sized>(
                 && let Continue::Break(halt) = visit(problem, newton, Visit::Between(from, point))
             {
                 if halt == Halt::Resize {
+                    if position.has_closed(newton) {
+                        return Ok(Outcome::Stopped(Stop::Closed).into());
+                    }
                     // The step has been looked at.
                     position.previous = None;
                     return Ok(position.halted(halt).into());

@@ -95,10 +95,7 @@ impl Position {
         if self.ended.is_some() {
             return self.ended;
         }
-        if let Some(from) = &self.previous
-            && self.turned
-            && closes(newton, &self.first, from, &self.point)
-        {
+        if self.has_closed(newton) {
             return Some(Stop::Closed);
         }
         if self.count == 0 {
@@ -113,6 +110,12 @@ impl Position {
         self.count += 1;
         let points = self.stepper.options.points;
         (self.count >= points).then_some(Stop::PointLimit { points })
+    }
+
+    /// Whether the last step passed the first point again.
+    pub(super) fn has_closed(&self, newton: &Newton) -> bool {
+        let passes = |from| closes(newton, &self.first, from, &self.point);
+        self.turned && self.previous.as_ref().is_some_and(passes)
     }
 
     fn unbounded(&self) -> Option<Stop> {
