@@ -2,7 +2,8 @@
 //!
 //! Where the branch turns has been located, so that it passes a value at most once between two neighbours among its points and turns.
 //! There the solution is searched along the chord of the two, from one of them. Where that leads nowhere, as between orbits of
-//! many contacts that another method has found in longer steps, it is searched from the other one, and by way of the orbit half-way.
+//! many contacts that another method has found in longer steps, or to another limb of the branch, it is searched from the other one, and by way
+//! of the orbit half-way.
 
 use super::branch::Branch;
 use super::point::Point;
@@ -12,8 +13,9 @@ use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::error::{Error, ErrorKind};
 
-/// The way to a value is halved so often at most.
-const HALVINGS: usize = 3;
+/// The way to a value is halved so often at most, and with it orbits are looked for so often.
+const HALVINGS: usize = 7;
+const LOOKS: usize = 60;
 /// What was found by other ways is no farther from both neighbours than they are apart, to this factor.
 const ASIDE: f64 = 1.5;
 /// The reason for which other ways are tried.
@@ -51,45 +53,57 @@ pub(crate) fn orbits_at(
     is_same: impl Fn(&Point, &Point) -> bool,
 ) -> Result<Vec<Point>, Error> {
     let chain = chain(&branch.points, &turns(branch));
-    let search = |ends: [&Point; 2]| divided(&mut between, ends, value, HALVINGS);
+    let search = |ends: [&Point; 2]| divided(&mut between, ends, value, (HALVINGS, &mut { LOOKS }));
     solutions(&chain, value, |point| point.value, search, is_same)
 }
 
-/// The orbit at a value between two neighbours, from one of them, or else by way of others.
+/// The orbit at a value between two neighbours, from one of them, or else by way of others, with so many halvings and orbits left.
 fn divided(
     between: &mut impl FnMut([&Point; 2], f64) -> Result<Point, Error>,
     [a, b]: [&Point; 2],
     value: f64,
-    halvings: usize,
+    (halvings, left): (usize, &mut usize),
 ) -> Result<Point, Error> {
-    let reason = match between([a, b], value) {
-        Err(reason) if halvings > 0 && reason.variant() == LOST => reason,
-        found => return found,
-    };
+    let others = halvings > 0 && *left > 0;
+    *left = left.saturating_sub(2);
     let lies_between = |found: &Point| {
         let whole = distance(a, b);
-        [a, b]
-            .iter()
-            .all(|end| distance(end, found) <= ASIDE * whole)
+        let outside = [a, b, found].map(outside);
+        let alike = outside[0] != outside[1] || outside[0] == outside[2];
+        let is_near = |end: &&Point| distance(end, found) <= ASIDE * whole;
+        alike && [a, b].iter().all(is_near)
+    };
+    let first = match between([a, b], value) {
+        Err(reason) if others && reason.variant() == LOST => Err(reason),
+        // It may be of another part of the branch.
+        Ok(found) if others && !lies_between(&found) => Ok(found),
+        found => return found,
     };
     match between([b, a], value) {
         Ok(found) if lies_between(&found) => return Ok(found),
         Err(other) if other.kind() == ErrorKind::Cancelled => return Err(other),
         _ => {}
     }
-    let by_way_of = |middle: Point, between: &mut _| {
+    let mut halved =
+        |ends: [&Point; 2], value: f64| divided(between, ends, value, (halvings - 1, &mut *left));
+    let middle = halved([a, b], 0.5 * (a.value + value)).and_then(|middle| {
         if lies_between(&middle) {
-            divided(between, [&middle, b], value, halvings - 1)
+            halved([&middle, b], value)
         } else {
-            Err(reason.clone())
+            first.clone()
         }
-    };
-    let middle = divided(between, [a, b], 0.5 * (a.value + value), halvings - 1);
-    match middle.and_then(|middle| by_way_of(middle, between)) {
+    });
+    match middle {
         Ok(found) if lies_between(&found) => Ok(found),
         Err(other) if other.kind() == ErrorKind::Cancelled => Err(other),
-        _ => Err(reason),
+        _ => first.clone(),
     }
+}
+
+/// How many multipliers are outside of the unit circle, where they are known: on another limb of the branch it is another number.
+fn outside(point: &Point) -> usize {
+    let multipliers = point.stability.multipliers.iter();
+    multipliers.filter(|m| m.norm() > 1.0).count()
 }
 
 /// How far the states of two orbits are apart.
