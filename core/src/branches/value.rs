@@ -53,7 +53,7 @@ pub(crate) fn orbits_at(
     is_same: impl Fn(&Point, &Point) -> bool,
 ) -> Result<Vec<Point>, Error> {
     let chain = chain(&branch.points, &turns(branch));
-    let search = |ends: [&Point; 2]| divided(&mut between, ends, value, (HALVINGS, &mut { LOOKS }));
+    let search = |ends: [&Point; 2]| divided(&mut between, ends, value, HALVINGS, &mut { LOOKS });
     solutions(&chain, value, |point| point.value, search, is_same)
 }
 
@@ -62,7 +62,8 @@ fn divided(
     between: &mut impl FnMut([&Point; 2], f64) -> Result<Point, Error>,
     [a, b]: [&Point; 2],
     value: f64,
-    (halvings, left): (usize, &mut usize),
+    halvings: usize,
+    left: &mut usize,
 ) -> Result<Point, Error> {
     let others = halvings > 0 && *left > 0;
     *left = left.saturating_sub(2);
@@ -85,7 +86,7 @@ fn divided(
         _ => {}
     }
     let mut halved =
-        |ends: [&Point; 2], value: f64| divided(between, ends, value, (halvings - 1, &mut *left));
+        |ends: [&Point; 2], value: f64| divided(between, ends, value, halvings - 1, &mut *left);
     let middle = halved([a, b], 0.5 * (a.value + value)).and_then(|middle| {
         if lies_between(&middle) {
             halved([&middle, b], value)

@@ -42,8 +42,6 @@ pub(super) const LOOKS: usize = 6;
 pub(super) const CLOSE: f64 = 1e-3;
 /// The nearest that an orbit is looked for to another one, as a part of what lies between two.
 const ASIDE: f64 = 0.15;
-/// Where none is found there, so much nearer to one of both, as parts of the way to it.
-const NEARER: [f64; 2] = [0.5, 0.8];
 /// Half of the widths about a turn that are looked at, as parts of the step.
 const BESIDE: [f64; 3] = [1e-2, 1e-3, 1e-4];
 /// Orbits there are known to this part of how far they are from the turn: a step may be hardly longer than what Newton's method leaves.
@@ -283,18 +281,16 @@ impl Engine {
         };
         for _ in 0..LOOKS {
             let place = in_doubt(&known, [from, from + whole], CLOSE * whole, kinks)?;
+            let options = self.options.newton;
+            let part = (place - from) / whole;
             // What is only looked at leaves the walk as it is.
             let contraction = newton.contraction();
-            let next = known.iter().position(|other| other.place > place)?;
-            let before = next.checked_sub(1)?;
-            let beside = [before, next].map(|at| known[at].place);
-            let found = places_beside(place, beside).find_map(|place| {
-                let (part, options) = ((place - from) / whole, self.options.newton);
-                let point = inside(problem.equations(), newton, ends, part, options)?;
-                (!kinks || is_on_way(newton, ends, &point)).then_some((place, point))
-            });
+            let point = inside(problem.equations(), newton, ends, part, options);
             newton.remember_contraction(contraction);
-            let (place, point) = found?;
+            let point = point?;
+            if kinks && !is_on_way(newton, ends, &point) {
+                return None;
+            }
             let seen = Seen::at(problem, &point, between[0].falls);
             let mut pairs = seen.values.iter().zip(&between[0].values);
             if pairs.any(|(here, there)| there.is_known() && !here.is_known()) {
@@ -308,6 +304,7 @@ impl Engine {
             if height < 0.0 {
                 return Some(seen);
             }
+            let next = known.iter().position(|other| other.place > place)?;
             known.insert(next, Height { place, height });
         }
         None
@@ -517,12 +514,6 @@ pub(super) fn is_on_way(newton: &Newton, step: Step<'_>, found: &CurvePoint) -> 
     let along = |at: &CurvePoint| newton.norm().product(scale, &at.tangent, &chord);
     let [a, b, here] = [step.before, step.next, found].map(along);
     here * a > 0.0 && here * b > 0.0
-}
-
-/// A place between two others, and those nearer to these where orbits are looked for if there is none to be found at the first.
-fn places_beside(place: f64, beside: [f64; 2]) -> impl Iterator<Item = f64> {
-    let nearer = move |part: &f64| beside.map(|other| place + part * (other - place));
-    [place].into_iter().chain(NEARER.iter().flat_map(nearer))
 }
 
 /// Puts an orbit to its place among the parts of a step: where the way by it is hardly longer. No arc length tells that where the branch bends.
