@@ -250,13 +250,15 @@ impl ArcLength {
     }
 
     /// Along the tangent before a step, or along its chord where that tangent hardly leads to its end, as at a touch from which unknowns go as a root. It
-    /// grows the way that the tangents do.
+    /// grows the way that the tangents do. Where one goes along the chord and the other one against it, the chord is not the way: the point before may be in
+    /// unknowns that it was not solved in.
     pub(crate) fn over(newton: &Newton, step: Step<'_>) -> Self {
         let Step { before, next } = step;
         let (norm, scale, chord) = (newton.norm(), before.scale, step.difference());
         let [first, last] = [before, next].map(|at| norm.product(scale, &at.tangent, &chord));
         let whole = norm.length(scale, &chord);
-        if first.abs() > SLANTED * whole || last.abs() < first.abs() {
+        let leads = first.abs() > SLANTED * whole || last.abs() < first.abs();
+        if leads || first * last < 0.0 {
             return Self::from(newton, before);
         }
         let mut border = vec![0.0; chord.len()];
