@@ -205,7 +205,8 @@ impl BranchContext {
     /// See [`Branch::at`](crate::Branch::at).
     pub(crate) fn at(&self, branch: &Branch, value: f64) -> Result<Vec<Point>, Error> {
         let same = |a: &Point, b: &Point| is_same(&a.orbit, &b.orbit);
-        orbits_at(branch, value, |ends, value| self.between(ends, value), same)
+        let search = |ends: [&Point; 2], value: f64, _: usize| self.between(ends, value);
+        orbits_at(branch, value, 1, search, same)
     }
 
     /// The orbit at a value between those of two neighbours, with their harmonics, or more where the tolerance asks for them.

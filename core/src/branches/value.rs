@@ -2,7 +2,8 @@
 //!
 //! Where the branch turns has been located, so that it passes a value at most once between two neighbours among its points and turns.
 //! There the solution is searched along the chord of the two, from one of them. Where that leads nowhere, as between orbits of
-//! many contacts that another method has found in longer steps, it is searched from the other one, and by way of the orbit half-way.
+//! many contacts that another method has found in longer steps, or to another limb of the branch, it is searched from the other one, in the other
+//! ways of the method, and by way of the orbit half-way.
 
 use super::branch::Branch;
 use super::point::Point;
@@ -12,8 +13,9 @@ use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::error::{Error, ErrorKind};
 
-/// The way to a value is halved so often at most.
-const HALVINGS: usize = 3;
+/// The way to a value is halved so often at most, and with it orbits are looked for so often.
+const HALVINGS: usize = 7;
+const LOOKS: usize = 60;
 /// What was found by other ways is no farther from both neighbours than they are apart, to this factor.
 const ASIDE: f64 = 1.5;
 /// The reason for which other ways are tried.
@@ -43,53 +45,79 @@ pub(crate) fn turns_at<T>(points: &[T], after: usize, value: f64, of: impl Fn(&T
 /// The orbits of a branch at a value, in its order.
 ///
 /// # Errors
-/// Those of `between`, which finds the orbit at a value between two neighbours, near the first.
+/// Those of `between`, which finds the orbit at a value between two neighbours, near the first, in so many ways; the first is the one to begin with.
 pub(crate) fn orbits_at(
     branch: &Branch,
     value: f64,
-    mut between: impl FnMut([&Point; 2], f64) -> Result<Point, Error>,
+    ways: usize,
+    mut between: impl FnMut([&Point; 2], f64, usize) -> Result<Point, Error>,
     is_same: impl Fn(&Point, &Point) -> bool,
 ) -> Result<Vec<Point>, Error> {
     let chain = chain(&branch.points, &turns(branch));
-    let search = |ends: [&Point; 2]| divided(&mut between, ends, value, HALVINGS);
+    let search = |ends: [&Point; 2]| {
+        let mut left = Left { ways, looks: LOOKS };
+        divided(&mut between, ends, value, HALVINGS, &mut left)
+    };
     solutions(&chain, value, |point| point.value, search, is_same)
 }
 
-/// The orbit at a value between two neighbours, from one of them, or else by way of others.
+/// The ways in which an orbit is looked for, and how many may be yet.
+struct Left {
+    ways: usize,
+    looks: usize,
+}
+
+/// The orbit at a value between two neighbours, from one of them, or else by way of others, with so many halvings and orbits left.
 fn divided(
-    between: &mut impl FnMut([&Point; 2], f64) -> Result<Point, Error>,
+    between: &mut impl FnMut([&Point; 2], f64, usize) -> Result<Point, Error>,
     [a, b]: [&Point; 2],
     value: f64,
     halvings: usize,
+    left: &mut Left,
 ) -> Result<Point, Error> {
-    let reason = match between([a, b], value) {
-        Err(reason) if halvings > 0 && reason.variant() == LOST => reason,
-        found => return found,
-    };
+    let others = halvings > 0 && left.looks > 0;
+    left.looks = left.looks.saturating_sub(1 + left.ways);
     let lies_between = |found: &Point| {
         let whole = distance(a, b);
-        [a, b]
-            .iter()
-            .all(|end| distance(end, found) <= ASIDE * whole)
+        let outside = [a, b, found].map(outside);
+        let alike = outside[0] != outside[1] || outside[0] == outside[2];
+        let is_near = |end: &&Point| distance(end, found) <= ASIDE * whole;
+        alike && [a, b].iter().all(is_near)
     };
-    match between([b, a], value) {
-        Ok(found) if lies_between(&found) => return Ok(found),
-        Err(other) if other.kind() == ErrorKind::Cancelled => return Err(other),
-        _ => {}
-    }
-    let by_way_of = |middle: Point, between: &mut _| {
-        if lies_between(&middle) {
-            divided(between, [&middle, b], value, halvings - 1)
-        } else {
-            Err(reason.clone())
+    let first = match between([a, b], value, 0) {
+        Err(reason) if others && reason.variant() == LOST => Err(reason),
+        // It may be of another part of the branch.
+        Ok(found) if others && !lies_between(&found) => Ok(found),
+        found => return found,
+    };
+    let from_other = [([b, a], 0)].into_iter();
+    for (ends, way) in from_other.chain((1..left.ways).map(|way| ([a, b], way))) {
+        match between(ends, value, way) {
+            Ok(found) if lies_between(&found) => return Ok(found),
+            Err(other) if other.kind() == ErrorKind::Cancelled => return Err(other),
+            _ => {}
         }
-    };
-    let middle = divided(between, [a, b], 0.5 * (a.value + value), halvings - 1);
-    match middle.and_then(|middle| by_way_of(middle, between)) {
+    }
+    let mut halved =
+        |ends: [&Point; 2], value: f64| divided(between, ends, value, halvings - 1, left);
+    let middle = halved([a, b], 0.5 * (a.value + value)).and_then(|middle| {
+        if lies_between(&middle) {
+            halved([&middle, b], value)
+        } else {
+            first.clone()
+        }
+    });
+    match middle {
         Ok(found) if lies_between(&found) => Ok(found),
         Err(other) if other.kind() == ErrorKind::Cancelled => Err(other),
-        _ => Err(reason),
+        _ => first.clone(),
     }
+}
+
+/// How many multipliers are outside of the unit circle, where they are known: on another limb of the branch it is another number.
+fn outside(point: &Point) -> usize {
+    let multipliers = point.stability.multipliers.iter();
+    multipliers.filter(|m| m.norm() > 1.0).count()
 }
 
 /// How far the states of two orbits are apart.

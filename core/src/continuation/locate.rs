@@ -208,7 +208,7 @@ fn search_along<P: AsProblem + ?Sized>(
     })
 }
 
-/// The point of the curve at a part of a step, as the arc length along the first tangent tells.
+/// The point of the curve at a part of a step, as the arc length [over](ArcLength::over) it tells.
 ///
 /// `None` if the correction fails.
 pub(crate) fn inside(
@@ -219,8 +219,8 @@ pub(crate) fn inside(
     options: NewtonOptions,
 ) -> Option<CurvePoint> {
     let Step { before: a, next: b } = step;
-    let arc = ArcLength::from(newton, a);
-    let length = arc.length(newton, a, b);
+    let arc = ArcLength::over(newton, step);
+    let length = arc.at(&b.u);
     let value = f64::NAN;
     let [from, to] = [(0.0, a), (length, b)].map(|(x, point)| Side {
         place: Place { x, value },
@@ -246,6 +246,30 @@ impl ArcLength {
             origin: dot(&border, &a.u),
             border,
             scale: a.scale,
+        }
+    }
+
+    /// Along the tangent before a step, or along its chord where that tangent hardly leads to its end, as at a touch from which unknowns go as a root. It
+    /// grows the way that the tangents do. Where one goes along the chord and the other one against it, the chord is not the way: the point before may be in
+    /// unknowns that it was not solved in.
+    pub(crate) fn over(newton: &Newton, step: Step<'_>) -> Self {
+        let Step { before, next } = step;
+        let (norm, scale, chord) = (newton.norm(), before.scale, step.difference());
+        let [first, last] = [before, next].map(|at| norm.product(scale, &at.tangent, &chord));
+        let whole = norm.length(scale, &chord);
+        let leads = first.abs() > SLANTED * whole || last.abs() < first.abs();
+        if leads || first * last < 0.0 {
+            return Self::from(newton, before);
+        }
+        let mut border = vec![0.0; chord.len()];
+        norm.linear_form(scale, &chord, &mut border);
+        for x in &mut border {
+            *x *= last.signum() / whole;
+        }
+        Self {
+            origin: dot(&border, &before.u),
+            border,
+            scale,
         }
     }
 

@@ -1,9 +1,11 @@
 //! Every orbit of a branch at a value of what it varies.
 //!
 //! Where the branch turns has been located, so that it passes a value at most once between two neighbours of its orbits and turns. There
-//! the orbit is searched along the chord of the two, or by the other ways of [`value`](crate::branches::value).
+//! the orbit is searched along the chord of the two, or by the other ways of [`value`](crate::branches::value). Of these, in more segments: of a
+//! limb with a multiplier of hundreds, motions from near the chord go to another one.
 
 use super::compute;
+use super::equations::Span;
 use super::problem::ShootingProblem;
 use super::start::{self, First};
 use crate::branches::branch::Branch;
@@ -17,6 +19,8 @@ use crate::time::MotionError;
 
 /// The value is met to this part of the distance of the neighbours, and then exactly.
 const MET: f64 = 1e-6;
+/// Segments that an orbit is looked for in, in units of those that its neighbours have: first as many.
+const SEGMENTS: [usize; 3] = [1, 4, 16];
 /// States that differ by this part of the orbit's size are the same.
 const SAME: f64 = 1e-9;
 
@@ -30,15 +34,18 @@ pub(crate) fn at(
     value: f64,
 ) -> Result<Vec<Point>, Error> {
     let same = |a: &Point, b: &Point| is_same(a, b);
-    orbits_at(
-        branch,
-        value,
-        |ends, value| between(problem, ends, value),
-        same,
-    )
+    let search =
+        |ends: [&Point; 2], value: f64, way: usize| between(problem, ends, value, SEGMENTS[way]);
+    orbits_at(branch, value, SEGMENTS.len(), search, same)
 }
 
-fn between(problem: &ShootingProblem, [a, b]: [&Point; 2], value: f64) -> Result<Point, Error> {
+/// The orbit at a value from near the chord of two others, in so many times as many segments as they have.
+fn between(
+    problem: &ShootingProblem,
+    [a, b]: [&Point; 2],
+    value: f64,
+    times: usize,
+) -> Result<Point, Error> {
     let motion = |reason| MotionError { value, reason };
     let (equations, u) = start::of_point(problem, a)?;
     let mut first = First {
@@ -48,27 +55,46 @@ fn between(problem: &ShootingProblem, [a, b]: [&Point; 2], value: f64) -> Result
     };
     first.settle(problem).map_err(motion)?;
     let First { equations, u, .. } = &mut first;
-    let last = equations.unknowns_of(&b.orbit.states, b.value);
+    let mut ends = [u.clone(), equations.unknowns_of(&b.orbit.states, b.value)];
+    let span = equations.span.clone();
+    if times > 1 {
+        let segments = times * span.segments;
+        equations.divide(Span {
+            segments,
+            ..span.clone()
+        });
+        for (end, point) in ends.iter_mut().zip([a, b]) {
+            let states = equations.states_from(&point.orbit.state(), point.value);
+            *end = equations.unknowns_of(&states.map_err(motion)?, point.value);
+        }
+    }
     let mut newton = Newton::new(equations);
     let options = problem.newton(problem.source.tolerance, equations.frame.ratio);
     let chord = Chord {
-        ends: [u.clone(), last],
+        ends,
         range: (b.value - a.value).abs(),
         tolerance: MET,
     };
     let located = chord.at(equations, &mut newton, value, options);
-    let lost = OrbitError::Lost {
+    let lost = || OrbitError::Lost {
         value,
         from: a.value,
         to: b.value,
     };
-    let Some(located) = located else {
-        return Err(lost.into());
-    };
-    *u = located.point.u;
+    *u = located.ok_or_else(lost)?.point.u;
     let end = u.len() - 1;
     u[end] = value;
-    solve::at_value(equations, &mut newton, u, options).map_err(|_| lost)?;
+    solve::at_value(equations, &mut newton, u, options).map_err(|_| lost())?;
+    if times > 1 {
+        let states = equations.states_of(u);
+        equations.divide(span);
+        let order = 2 * a.orbit.coordinates;
+        let fewer = states.chunks(order).step_by(times).flatten();
+        let fewer: Vec<f64> = fewer.copied().collect();
+        *u = equations.unknowns_of(&fewer, value);
+        let mut newton = Newton::new(equations);
+        solve::at_value(equations, &mut newton, u, options).map_err(|_| lost())?;
+    }
     compute::read(problem, first, value)
 }
 

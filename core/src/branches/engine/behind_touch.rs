@@ -15,7 +15,7 @@
 //! di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2.
 
 use super::Engine;
-use super::inside::{CLOSE, Height, LOOKS, distance, in_doubt, is_on_way, noise_of, step_between};
+use super::inside::{CLOSE, Height, LOOKS, in_doubt, is_on_way, noise_of, step_between};
 use super::seen::Seen;
 use crate::branches::problem::{BranchProblem, Test};
 use crate::continuation::locate::{ArcLength, inside};
@@ -23,16 +23,21 @@ use crate::continuation::newton::{Newton, NewtonOptions};
 
 /// Where orbits are computed in any case, by (1).
 const PLACES: [f64; 2] = [0.3, 0.65];
+/// Orbits that are looked for to come to a place, at most.
+const TRIES: usize = 12;
 
 /// A part of the way from a touch on, and the orbits known on it.
 struct Behind<'s> {
-    /// Where the part begins, which may be the touch, and ends.
-    ends: [&'s Seen; 2],
-    /// `s` and `r` there.
-    ways: [f64; 2],
+    /// Where the part begins, which may be the touch.
+    begin: &'s Seen,
+    /// `s`, and where (1) is one.
+    along: ArcLength,
+    whole: f64,
+    /// `r` at both ends.
     range: [f64; 2],
     /// From the touch on, with `r`.
     known: Vec<(f64, Seen)>,
+    falls: Option<bool>,
     options: NewtonOptions,
 }
 
@@ -45,11 +50,14 @@ impl Engine {
         touch: &Seen,
         end: &Seen,
     ) -> Vec<Seen> {
+        let along = ArcLength::over(newton, step_between([touch, end]));
         let mut behind = Behind {
-            ends: [touch, end],
-            ways: [0.0, distance(newton, &touch.point, &end.point)],
+            begin: touch,
+            whole: along.at(&end.point.u),
+            along,
             range: [0.0, 1.0],
             known: vec![(0.0, touch.clone()), (1.0, end.clone())],
+            falls: touch.falls,
             options: self.options.newton,
         };
         let contraction = newton.contraction();
@@ -74,7 +82,7 @@ impl Engine {
         if ends.iter().any(|end| end.point.u.len() != length) {
             return Vec::new();
         }
-        let along = ArcLength::from(newton, &touch.point);
+        let along = ArcLength::over(newton, step_between([touch, ends[1]]));
         let ways = ends.map(|end| along.at(&end.point.u));
         let part = ways[0] / ways[1];
         let goes_on = part > 0.0 && part < 1.0;
@@ -84,10 +92,12 @@ impl Engine {
         let middle = part.sqrt();
         let known = [(0.0, touch), (middle, ends[0]), (1.0, ends[1])];
         let mut behind = Behind {
-            ends,
-            ways,
+            begin: ends[0],
+            whole: ways[1],
+            along,
             range: [middle, 1.0],
             known: known.map(|(r, seen)| (r, seen.clone())).into(),
+            falls: ends[0].falls,
             options: self.options.newton,
         };
         let contraction = newton.contraction();
@@ -98,20 +108,60 @@ impl Engine {
 }
 
 impl Behind<'_> {
-    /// Computes the orbit at a place. Says whether there is one.
+    /// Computes the orbit at a place, by way of others nearer to those that are known where that fails: behind a touch the branch may bend too sharply
+    /// for one step, and from the touch itself switches go as a root. Says whether there is a new one.
     fn add(&mut self, problem: &mut dyn BranchProblem, newton: &mut Newton, place: f64) -> bool {
-        let step = step_between(self.ends);
-        let [from, to] = self.ways;
-        let part = (place * place * to - from) / (to - from);
+        let count = self.known.len();
+        let (mut reach, mut failed) = (place, 0);
+        for _ in 0..TRIES {
+            if self.add_between(problem, newton, reach) {
+                if reach == place {
+                    break;
+                }
+                (reach, failed) = (place, 0);
+            } else {
+                let [from, to] = self.beside(place).map(|at| self.known[at].0);
+                let other = if failed % 2 == 0 { to } else { from };
+                reach = other + 0.5_f64.powi(failed / 2 + 1) * (place - other);
+                failed += 1;
+            }
+        }
+        self.known.len() > count
+    }
+
+    /// The known places beside another one.
+    fn beside(&self, place: f64) -> [usize; 2] {
+        let next = self.known.iter().position(|(other, _)| *other > place);
+        let next = next.unwrap_or(self.known.len() - 1).max(1);
+        [next - 1, next]
+    }
+
+    /// Computes the orbit at a place from those beside it, if it is on the way from one to the other.
+    fn add_between(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        place: f64,
+    ) -> bool {
+        let [(from, a), (to, b)] = self.beside(place).map(|at| &self.known[at]);
+        let step = step_between([a, b]);
+        let part = (place * place - from * from) / (to * to - from * from);
         let Some(point) = inside(problem.equations(), newton, step, part, self.options) else {
             return false;
         };
         if !is_on_way(newton, step, &point) {
             return false;
         }
-        let seen = Seen::at(problem, &point, self.ends[0].falls);
-        let next = self.known.iter().position(|(other, _)| *other > place);
-        self.known.insert(next.unwrap_or(1), (place, seen));
+        // Arc lengths of two orbits differ where the branch bends.
+        let here = (self.along.at(&point.u) / self.whole).max(0.0).sqrt();
+        let place = if here > *from && here < *to {
+            here
+        } else {
+            place
+        };
+        let seen = Seen::at(problem, &point, self.falls);
+        let [_, next] = self.beside(place);
+        self.known.insert(next, (place, seen));
         true
     }
 
@@ -122,12 +172,30 @@ impl Behind<'_> {
             .filter(|of| problem.is_of_multipliers(*of))
             .collect();
         for test in of_map.into_iter().map(Test::Watched) {
-            let noise = noise_of(problem, test, self.ends[0]);
+            let noise = noise_of(problem, test, self.begin);
+            // Parts in which no orbit is found, as next to the touch, hide none of the others.
+            let mut shut: Vec<f64> = Vec::new();
             for _ in 0..LOOKS {
-                let heights = self.heights(test, noise);
-                let place = heights.and_then(|known| in_doubt(&known, self.range, CLOSE, true));
-                if !place.is_some_and(|place| self.add(problem, newton, place)) {
+                let Some(heights) = self.heights(test, noise) else {
                     break;
+                };
+                let parts = heights
+                    .windows(2)
+                    .filter(|pair| !shut.contains(&pair[0].place));
+                let mut parts = parts.map(|pair| [pair[0].place, pair[1].place]);
+                let deepest =
+                    in_doubt(&heights, self.range, CLOSE, true).filter(|_| shut.is_empty());
+                let Some(place) = deepest.or_else(|| {
+                    parts.find_map(|[from, to]| {
+                        let range = [from.max(self.range[0]), to.min(self.range[1])];
+                        in_doubt(&heights, range, CLOSE, true)
+                    })
+                }) else {
+                    break;
+                };
+                if !self.add(problem, newton, place) {
+                    let [from, _] = self.beside(place);
+                    shut.push(self.known[from].0);
                 }
             }
         }
@@ -138,7 +206,7 @@ impl Behind<'_> {
         let values = self.known.iter().map(|(_, seen)| seen.value(test));
         let reference = values.clone().map(|value| value.exponent);
         let reference = reference.fold(f64::NEG_INFINITY, f64::max);
-        let sign = self.ends[0].value(test).mantissa.signum();
+        let sign = self.begin.value(test).mantissa.signum();
         let places = self.known.iter().map(|(place, _)| *place);
         let heights = places.zip(values).map(|(place, value)| Height {
             place,

@@ -8,7 +8,8 @@
 //! n in { k, k + 1 },    of a pair    n in { k, k + 2 }                                                        (1)
 //! ```
 //!
-//! are outside at that end. Where (1) does not hold the step is halved, and each half is looked at.
+//! are outside at that end. Where (1) does not hold the step is halved, and each half is looked at. What is not located there is none if the events
+//! that were located between both ends of the half lead by (1) from one number to the other.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 4 (a bifurcation is where the number of
 //! multipliers outside of the circle changes).
@@ -21,7 +22,7 @@ use crate::branches::point::Event;
 use crate::branches::problem::BranchProblem;
 use crate::continuation::locate::inside;
 use crate::continuation::newton::Newton;
-use crate::event::EventKind;
+use crate::event::{EventKind, Turn};
 
 /// A step is divided until it is shorter than this part of its value, which takes fewer halvings than so many: what is so near to an event, as
 /// beside a touch, is one with it. Near a fold the value says nothing of that, since it goes as the square of the way; there it is halved as often.
@@ -72,6 +73,7 @@ impl Engine {
                     if self.ended.is_some() {
                         return;
                     }
+                    self.take_back(problem, pair, known, turns);
                 }
                 if problem.record().turns.len() == turns {
                     halves.extend([[a, middle.clone()], [middle, b]]);
@@ -82,6 +84,24 @@ impl Engine {
             }
             parts = halves;
         }
+    }
+
+    /// Takes back turns from that number on if events from a number on explain what was looked for. Where the branch bends by more than a right angle between
+    /// an event and an orbit, the search along the tangent there passes the event and comes to orbits beyond both.
+    fn take_back(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        pair: [&Seen; 2],
+        known: usize,
+        turns: usize,
+    ) {
+        let record = problem.record();
+        let events = record.events.get(known..).unwrap_or_default();
+        if record.turns.len() == turns || !explain(problem, pair, events) {
+            return;
+        }
+        let taken: Vec<Turn> = problem.record_mut().turns.drain(turns..).collect();
+        self.unlocated.retain(|turn| !taken.contains(turn));
     }
 
     /// An orbit between two others.
@@ -101,6 +121,33 @@ impl Engine {
 
 /// Whether an event between two points does not agree with what is outside of the unit circle at both.
 fn hides(problem: &dyn BranchProblem, pair: [&Seen; 2], event: &Event) -> bool {
+    let ends = pair.map(|seen| outside(problem, seen));
+    beside(event).is_some_and(|fits| ends.iter().flatten().any(|outside| !fits.contains(outside)))
+}
+
+/// Whether events between two points lead from what is outside of the unit circle at one of them, by (1), to another number at the other one.
+fn explain(problem: &dyn BranchProblem, pair: [&Seen; 2], events: &[Event]) -> bool {
+    let [Some(here), Some(there)] = pair.map(|seen| outside(problem, seen)) else {
+        return false;
+    };
+    let [from, to] = step_between(pair).parameters();
+    let between = |event: &&Event| (event.point.value - from) * (event.point.value - to) <= 0.0;
+    let ways: Vec<_> = events.iter().filter(between).filter_map(beside).collect();
+    let mut reached = vec![here];
+    for _ in &ways {
+        for [a, b] in &ways {
+            for (one, other) in [(a, b), (b, a)] {
+                if reached.contains(one) && !reached.contains(other) {
+                    reached.push(*other);
+                }
+            }
+        }
+    }
+    here != there && reached.contains(&there)
+}
+
+/// The numbers of multipliers outside of the unit circle on both sides of an event, by (1), if its own tell.
+fn beside(event: &Event) -> Option<[usize; 2]> {
     let multipliers = &event.point.stability.multipliers;
     let (critical, _) = moduli::nearest(multipliers);
     let crossing = if event.kind == EventKind::NeimarkSacker {
@@ -117,12 +164,10 @@ fn hides(problem: &dyn BranchProblem, pair: [&Seen; 2], event: &Event) -> bool {
         .collect();
     let noise = TOGETHER.max(event.point.stability.error);
     if multipliers.is_empty() || !others.iter().all(|modulus| modulus.abs() > noise) {
-        return false;
+        return None;
     }
     let others = others.iter().filter(|modulus| **modulus > 0.0).count();
-    let ends = pair.map(|seen| outside(problem, seen));
-    let fits = |outside: usize| outside == others || outside == others + crossing;
-    ends.iter().flatten().any(|outside| !fits(*outside))
+    Some([others, others + crossing])
 }
 
 /// Number of multipliers outside of the unit circle at a point, if that is known.

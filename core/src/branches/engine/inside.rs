@@ -516,20 +516,25 @@ pub(super) fn is_on_way(newton: &Newton, step: Step<'_>, found: &CurvePoint) -> 
     here * a > 0.0 && here * b > 0.0
 }
 
-/// Puts an orbit to its place among the parts of a step.
+/// Puts an orbit to its place among the parts of a step: where the way by it is hardly longer. No arc length tells that where the branch bends.
 fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
-    let last = &parts[parts.len() - 1];
-    let along = ArcLength::from(newton, &parts[0].point);
-    let whole = along.at(&last.point.u);
-    let along = |seen: &Seen| along.at(&seen.point.u) / whole;
-    let place = along(&found);
-    let next = parts.iter().position(|part| along(part) > place);
-    parts.insert(next.unwrap_or(parts.len() - 1).max(1), found);
+    let scale = parts[0].point.scale;
+    let apart = |a: &Seen, b: &Seen| {
+        let pairs = a.point.u.iter().zip(&b.point.u);
+        let difference: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+        newton.norm().length(scale, &difference)
+    };
+    let detours = parts
+        .windows(2)
+        .map(|pair| apart(&pair[0], &found) + apart(&found, &pair[1]) - apart(&pair[0], &pair[1]));
+    let least = detours.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+    parts.insert(least.map_or(1, |(place, _)| place + 1), found);
 }
 
 /// How far a point is behind another one.
 pub(super) fn distance(newton: &Newton, a: &CurvePoint, b: &CurvePoint) -> f64 {
-    ArcLength::from(newton, a).at(&b.u)
+    let step = Step { before: a, next: b };
+    ArcLength::over(newton, step).at(&b.u).abs()
 }
 
 /// Where (1), or (2) if there may be kinks, comes down lowest in an interval, below zero, between known heights that are not too close.

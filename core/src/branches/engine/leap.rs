@@ -6,8 +6,9 @@
 //! each of them a gap is on the side of its level that belongs to the order of the values. Otherwise the branch has turned, and the step
 //! is made again, shorter.
 //!
-//! So it is where a gap passes its level and the branch turns, or is crossed, at no place that can be found: test functions are continuous along a
-//! limb, but where a touch is a corner of it.
+//! So it is where the branch is crossed at no place that can be found, or where a gap passes its level and the branch turns at none: test functions
+//! are continuous along a limb, but where a touch is a corner of it. Behind one fold the walk would go back along the limb that it was to come to,
+//! with the parameter as before: the bordered determinant alone changes its sign.
 //!
 //! Where one gap alone passes a level, the orbit is looked for if the distance from the level, a linear form of the orbit, says that it
 //! is not within the step, or hardly.
@@ -17,7 +18,7 @@ use super::grazing_search::{Approach, Reached};
 use super::seen::{Seen, changes};
 use super::zero::is_crossing;
 use crate::branches::extreme::{Bend, Extreme, Passage, is_copy, passed};
-use crate::branches::problem::{BranchProblem, Test};
+use crate::branches::problem::{BranchProblem, Change, Test};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::Newton;
 use crate::numeric::linear::dot;
@@ -57,9 +58,8 @@ impl Engine {
         let length = newton.norm().length(before.scale, &step.difference());
         let through = without_copies(passed(&here.extremes, &there.extremes));
         if length > SHORTEST
-            && !through.is_empty()
             && !through.iter().any(is_corner)
-            && self.jumps(problem, &mut newton, next)
+            && self.jumps(problem, &mut newton, next, through.is_empty())
         {
             problem.count(&newton);
             self.back = Some((before, AGAIN * length));
@@ -91,19 +91,25 @@ impl Engine {
     }
 
     /// Whether the branch turns or is crossed between the last point and another one at no place that can be found: test functions jump from one
-    /// limb to another.
+    /// limb to another. A turn is asked for where a gap passes its level: where the parameter goes the other way behind it, the walk has
+    /// gone round the fold.
     fn jumps(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         next: &CurvePoint,
+        only_crossed: bool,
     ) -> bool {
         let Some(last) = self.seen.last().cloned() else {
             return false;
         };
         let next = Seen::at(problem, next, self.falls);
         let mut found = changes(problem, &last, &next);
-        found.retain(|change| change.test == Test::Slope || is_crossing(problem, *change));
+        let turns = |change: &Change| change.test == Test::Slope;
+        if only_crossed && found.iter().any(turns) {
+            return false;
+        }
+        found.retain(|change| turns(change) || is_crossing(problem, *change));
         found
             .into_iter()
             .any(|change| self.jumps_at(problem, newton, [&last, &next], change))

@@ -112,6 +112,33 @@ fn motions_of_two_frequencies_between_two_stops() {
     }
 }
 
+/// Forwards a step of the contact equation passes the touch at 0.42773, from which switches go as a root: an orbit beside it is found from those
+/// farther behind alone.
+#[test]
+fn doublings_of_four_masses() {
+    let stops = [
+        (0, 1.0, 2.4, 0.85),
+        (1, 1.0, 4.8, 0.74),
+        (2, -1.0, 5.0, 0.56),
+    ];
+    let places = [0.427_795_747, 0.427_835_355];
+    let system = chain(4, 0.062, 0.21, &stops);
+    finds(&system, [0.25, 1.1], EventKind::PeriodDoubling, places);
+}
+
+/// Forwards a step of shooting passes the touch at 0.41762 and both tori. The branch bends by more than a right angle in it.
+#[test]
+fn tori_of_four_masses() {
+    let stops = [
+        (0, 1.0, 27.0, 0.65),
+        (1, 1.0, 6.1, 0.98),
+        (2, 1.0, 9.0, 0.58),
+    ];
+    let places = [0.417_752_813, 0.420_654_598];
+    let system = chain(4, 0.029, 0.058, &stops);
+    finds(&system, [0.25, 1.1], EventKind::NeimarkSacker, places);
+}
+
 /// Between a fold at 0.336728985 and a touch at 0.33672986 a pair leaves the unit circle. Values next to the fold differ by less than that is away, when
 /// orbits do not.
 #[test]

@@ -80,8 +80,34 @@ fn masses_between_two_equal_stops() {
     }
 }
 
+/// Forwards a step of the contact equation leads behind a fold that no gap tells of, from where the walk would go back.
+#[test]
+fn a_step_round_a_fold() {
+    let stops = [
+        (0, 1.0, 4.3, 1.0),
+        (1, 1.0, 44.0, 0.38),
+        (2, 1.0, 4.9, 0.56),
+    ];
+    agrees(&chain(4, 0.052, 0.11, &stops), [0.25, 1.1]);
+}
+
 /// Backwards two minima of the gap reach the level in one step of the contact equation, in the middle of which no orbit is found.
 #[test]
 fn two_touches_of_a_gear() {
     agrees(&Meshing {}, [0.4, 2.3]);
+}
+
+/// At one frequency there are three orbits. That on the middle limb is so unstable that the way from its neighbours leads to another one.
+#[test]
+fn orbits_on_three_limbs() {
+    let system = chain(3, 0.046, 0.33, &[(0, 1.0, 88.0, 0.6), (0, -1.0, 88.0, 0.6)]);
+    let request = FrequencyResponse::of(&system).from(0.3).to(1.3);
+    let branch = request.by(ContactEquation::new()).run().unwrap();
+    let found = branch.at(0.437).unwrap();
+    let heights: Vec<f64> = found.iter().map(hertzian::Point::peak_to_peak).collect();
+    let wanted = [1.240_409_866_82, 1.257_157_029_03, 1.256_989_635_09];
+    assert_eq!(heights.len(), 3, "{heights:?}");
+    for (found, wanted) in heights.iter().zip(wanted) {
+        assert!((found - wanted).abs() < 1e-8, "{found} {wanted}");
+    }
 }
