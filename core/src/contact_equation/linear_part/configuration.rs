@@ -111,11 +111,8 @@ impl Configuration {
             blocks: found.blocks.clone(),
         };
         // One pair has nothing beside it.
-        let may_be = found.blocks.len() > 1
-            && found
-                .blocks
-                .iter()
-                .all(|block| block.squares().count() == 2);
+        let mut blocks = found.blocks.iter();
+        let may_be = found.blocks.len() > 1 && blocks.all(|block| block.squares().count() == 2);
         let refined = may_be.then(|| pairs.refined(&own.blocks, &products));
         let refined = refined.flatten();
         let is_refined = refined.is_some();

@@ -114,11 +114,13 @@ impl Content {
         rings.map(|of| (of.decay * time).exp()).collect()
     }
 
-    /// The fastest decay of what turns meanwhile, if it turns faster than this.
-    pub(super) fn decay(&self, turns: f64) -> f64 {
-        let rings = self.rings.iter().flatten();
-        let turning = rings.filter(|of| of.turns > turns.max(-TURNING * of.decay));
-        turning.fold(0.0, |most: f64, of| most.max(-of.decay))
+    /// The fastest decay of what turns meanwhile, if it turns faster than this and has more than a pair may have by rounding.
+    pub(super) fn decay(&self, turns: f64, rounding: impl Fn(usize) -> f64) -> f64 {
+        let rings = self.rings.iter().enumerate();
+        let rings = rings.flat_map(|(r, rings)| rings.iter().map(move |of| (r, of)));
+        let turning = rings.filter(|(_, of)| of.turns > turns.max(-TURNING * of.decay));
+        let ringing = turning.filter(|(r, of)| of.most[0] > rounding(*r));
+        ringing.fold(0.0, |most: f64, (_, of)| most.max(-of.decay))
     }
 }
 

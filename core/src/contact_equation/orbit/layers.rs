@@ -19,6 +19,8 @@ const FULLEST: usize = 1 << 14;
 const DECAYS: f64 = 4.0;
 /// There are so many more than one at most.
 const MOST: i32 = 6;
+/// In parts of what the load holds a pair at, what rings by no more is left of Newton's method, as where nothing has been met.
+const ROUNDING: f64 = 1e-9;
 /// A layer has as many samples.
 const FEWEST: usize = 2;
 
@@ -79,7 +81,10 @@ impl Layer {
         let [from, to] = motion.phases(interval);
         let base = motion.equations.values.base;
         let moves = SAMPLES * motion.moves(interval);
-        let decay = content.decay(TAU * moves * base) * (to - from) / base;
+        let load = &motion.values(interval).load;
+        let held = |r: usize| load.iter().map(move |wave| wave.steady[2 * r][0].norm());
+        let rounding = |r: usize| ROUNDING * held(r).sum::<f64>();
+        let decay = content.decay(TAU * moves * base, rounding) * (to - from) / base;
         let more = (decay / DECAYS).log2().ceil().clamp(0.0, f64::from(MOST)) as i32;
         if more == 0 {
             return Vec::new();

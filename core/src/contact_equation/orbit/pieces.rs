@@ -34,6 +34,25 @@ pub(super) struct Part<'m, 'e> {
     pub(super) pieces: Vec<Piece<'m>>,
 }
 
+impl Part<'_, '_> {
+    pub(super) fn ripples(&self, piece: usize) -> &Ripples {
+        let own = self.pieces[piece].ripples.as_ref();
+        own.unwrap_or_else(|| self.signal.ripples())
+    }
+
+    /// What rings too fast for samples that are so far apart, while a piece lasts.
+    pub(super) fn fast(&self, piece: usize, time: f64) -> Fast {
+        self.ripples(piece).fast(time, self.signal.size)
+    }
+
+    /// The same in a way, from its beginning on.
+    pub(super) fn fast_in(&self, way: &Way, time: f64) -> Fast {
+        let begin = self.pieces[way.piece].begin;
+        let later = (way.ends[0].x - begin) / self.signal.base();
+        unless_rounding(self.fast(way.piece, time).after(later), self.signal.size)
+    }
+}
+
 /// Samples from a phase on, and what rings then if that is not what rings where the interval begins.
 pub(super) struct Piece<'m> {
     pub(super) samples: Samples<'m>,
@@ -130,25 +149,6 @@ fn most(values: &[f64], rates: &[f64]) -> Vec<Most> {
         }
     });
     blocks.collect()
-}
-
-impl Part<'_, '_> {
-    pub(super) fn ripples(&self, piece: usize) -> &Ripples {
-        let own = self.pieces[piece].ripples.as_ref();
-        own.unwrap_or_else(|| self.signal.ripples())
-    }
-
-    /// What rings too fast for samples that are so far apart, while a piece lasts.
-    pub(super) fn fast(&self, piece: usize, time: f64) -> Fast {
-        self.ripples(piece).fast(time, self.signal.size)
-    }
-
-    /// The same in a way, from its beginning on.
-    pub(super) fn fast_in(&self, way: &Way, time: f64) -> Fast {
-        let begin = self.pieces[way.piece].begin;
-        let later = (way.ends[0].x - begin) / self.signal.base();
-        unless_rounding(self.fast(way.piece, time).after(later), self.signal.size)
-    }
 }
 
 #[cfg(test)]

@@ -103,7 +103,7 @@ mod tests {
             let entry = |i: usize, j: usize| ((7 * i + 3 * j) % 11) as f64 - 5.0;
             // Most entries of the second one are zero, and one of its rows is.
             let sparse = |i: usize, j: usize| {
-                if i == 1 || (i + j) % 3 != 0 {
+                if i == 1 || !(i + j).is_multiple_of(3) {
                     0.0
                 } else {
                     entry(j, i)
