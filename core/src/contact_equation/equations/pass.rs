@@ -8,7 +8,7 @@ use super::pass_results::Passed;
 use super::sink::Sink;
 use super::targets::Way;
 use super::workspace::Room;
-use crate::contact_equation::linear_part::block::{add, row_times};
+use crate::contact_equation::linear_part::block::{add, add_both, row_times};
 use crate::contact_equation::linear_part::configuration::Configuration;
 use crate::contact_equation::linear_part::values::{Instant, Values, pair};
 use crate::contact_equation::skeleton::Skeleton;
@@ -16,6 +16,7 @@ use crate::contact_equation::skeleton::interval::{Active, Interval};
 use crate::contact_equation::skeleton::phases::Place;
 use crate::continuation::arrow::links::Basis;
 use crate::law::{Derivatives, On};
+use crate::numeric::linear::{add_product, dot};
 use crate::system::System;
 
 /// Time of an interval whose ends are in one place by chance, as where several gaps have their extremes at once. They move apart when unknowns
@@ -472,30 +473,28 @@ impl Pass<'_> {
         let Sink::Chain { chain, .. } = &mut self.sink else {
             return;
         };
+        let [to, from] = &of.rows;
         for (r, block) in of.values.linear.blocks.iter().enumerate() {
             let [c, k] = room.targets.kernel(0, r);
             let d = block.deviation;
+            let pair = from[2 * r * order..][..2 * order].split_at(order);
             for i in 0..2 {
                 let row = &mut room.carried[(2 * r + i) * order..][..order];
-                for (j, entry) in row.iter_mut().enumerate() {
-                    let from = [0, 1].map(|l| of.from[(2 * r + l, j)]);
-                    *entry = c * from[i] + k * (d[i][0] * from[0] + d[i][1] * from[1]);
-                }
+                row.fill(0.0);
+                let mut factors = d[i].map(|x| k * x);
+                factors[i] += c;
+                add_both(pair.into(), factors, row);
             }
         }
-        for state in 0..order {
-            let [carried, _] = chain.link_mut(stretch.index).state_mut(state);
-            carried.fill(0.0);
-            let mut slopes = [0.0; 3];
-            for (own, row) in room.carried.chunks_exact(order).enumerate() {
-                let factor = of.to[(state, own)];
-                add(carried, factor, row);
-                for (to, by) in slopes.iter_mut().zip(room.targets.slopes(0, own)) {
-                    *to += factor * by;
-                }
-            }
+        let link = chain.link_mut(stretch.index);
+        let all = link.all_carried_mut();
+        all.fill(0.0);
+        add_product(to, &room.carried, order, all, &mut room.placed);
+        let slopes = room.targets.slopes_at_one(order);
+        for (state, factors) in to.chunks_exact(order).enumerate() {
             let direct = &mut room.by_next[state * columns..][..columns];
             direct.fill(0.0);
+            let slopes = slopes.map(|by| dot(factors, by));
             stretch.add_slopes(slopes, direct);
             if self.omega.is_some() {
                 direct[columns - 1] += slopes[2];

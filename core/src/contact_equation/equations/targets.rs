@@ -90,6 +90,11 @@ impl Targets {
         [self.by_from[at], self.by_to[at], self.by_omega[at]]
     }
 
+    /// The same of all states, where there is one target.
+    pub(super) fn slopes_at_one(&self, order: usize) -> [&[f64]; 3] {
+        [&self.by_from, &self.by_to, &self.by_omega].map(|of| &of[..order])
+    }
+
     /// `c` and `k` of a pair at a target.
     pub(in crate::contact_equation) fn kernel(&self, target: usize, pair: usize) -> [f64; 2] {
         let at = pair * self.count + target;

@@ -5,6 +5,7 @@ use super::targets::Targets;
 use crate::contact_equation::linear_part::values::Output;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::interval::Interval;
+use crate::numeric::linear::Placed;
 
 /// Room for a pass.
 #[derive(Debug, Default)]
@@ -28,6 +29,7 @@ pub(in crate::contact_equation) struct Room {
     pub(in crate::contact_equation) by_rate: Vec<f64>,
     /// Derivatives of the states of a configuration by those of the linear part.
     pub(in crate::contact_equation) carried: Vec<f64>,
+    pub(super) placed: Vec<Placed>,
     /// Rows over the states.
     pub(in crate::contact_equation) rows: [Vec<f64>; 3],
     /// Per switch: gap less level and its slope by the phase, and their derivatives.
@@ -77,6 +79,7 @@ impl Room {
             by_gap: vec![0.0; forces],
             by_rate: vec![0.0; forces],
             carried: vec![0.0; carried],
+            placed: Vec::with_capacity(order),
             rows: std::array::from_fn(|_| states()),
             at_switch: vec![[0.0; 2]; switches],
             switch_rows: vec![0.0; switches * columns],

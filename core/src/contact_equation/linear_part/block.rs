@@ -99,8 +99,17 @@ pub(in crate::contact_equation) fn add(to: &mut [f64], factor: f64, of: &[f64]) 
 }
 
 /// Adds two multiples.
-#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub(in crate::contact_equation) fn add_both([a, b]: [&[f64]; 2], [x, y]: [f64; 2], to: &mut [f64]) {
+    if let ([a], [b], [to]) = (a, b, &mut *to) {
+        // Most ways have no nodes, and one target.
+        *to += x * a + y * b;
+    } else {
+        add_many([a, b], [x, y], to);
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn add_many([a, b]: [&[f64]; 2], [x, y]: [f64; 2], to: &mut [f64]) {
     for ((to, a), b) in to.iter_mut().zip(a).zip(b) {
         *to += x * a + y * b;
     }

@@ -20,7 +20,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::block::{Block, Pair, add};
+use super::block::{Block, add, add_both};
 use super::linear::{Linear, Seen, seen};
 use super::refined::Pairs;
 use super::values::{Contact, Values, Wave};
@@ -48,6 +48,8 @@ pub(in crate::contact_equation) struct Configuration {
     pub(in crate::contact_equation) to: DMatrix<f64>,
     /// `S^-1`
     pub(in crate::contact_equation) from: DMatrix<f64>,
+    /// Both row by row.
+    pub(in crate::contact_equation) rows: [Vec<f64>; 2],
     /// Its pairs are those of [`refined`](super::refined).
     is_refined: bool,
 }
@@ -109,11 +111,8 @@ impl Configuration {
             blocks: found.blocks.clone(),
         };
         // One pair has nothing beside it.
-        let may_be = found.blocks.len() > 1
-            && found
-                .blocks
-                .iter()
-                .all(|block| block.squares().count() == 2);
+        let mut blocks = found.blocks.iter();
+        let may_be = found.blocks.len() > 1 && blocks.all(|block| block.squares().count() == 2);
         let refined = may_be.then(|| pairs.refined(&own.blocks, &products));
         let refined = refined.flatten();
         let is_refined = refined.is_some();
@@ -134,10 +133,12 @@ impl Configuration {
             changes: values.changes,
             kept: Kept::default(),
         };
+        let rows = [&to, &from].map(|of| of.transpose().as_slice().to_vec());
         Some(Self {
             values,
             to,
             from,
+            rows,
             is_refined,
         })
     }
@@ -178,16 +179,22 @@ impl Configuration {
     }
 
     fn row_by(&self, row: &[Seen], of: fn(f64) -> f64) -> Vec<Seen> {
-        let along = |rows: fn(&Seen) -> Pair| {
-            self.to.column_iter().map(move |column| {
-                let entry = |seen: &Seen| {
-                    let [x, y] = rows(seen);
-                    x * of(column[2 * seen.block]) + y * of(column[2 * seen.block + 1])
-                };
-                row.iter().map(entry).sum::<f64>()
-            })
-        };
-        seen(along(|seen| seen.position), along(|seen| seen.rate))
+        let order = self.to.nrows();
+        let mut both = [vec![0.0; order], vec![0.0; order]];
+        let mut columns = [vec![0.0; order], vec![0.0; order]];
+        for seen in row {
+            let pair = self.rows[0][2 * seen.block * order..].chunks_exact(order);
+            for (column, own) in columns.iter_mut().zip(pair) {
+                column.clear();
+                column.extend(own.iter().map(|x| of(*x)));
+            }
+            let columns = columns.each_ref().map(|of| &of[..]);
+            let [position, rate] = &mut both;
+            add_both(columns, seen.position, position);
+            add_both(columns, seen.rate, rate);
+        }
+        let [position, rate] = both;
+        seen(position.into_iter(), rate.into_iter())
     }
 
     /// States of the linear part from those of this one.

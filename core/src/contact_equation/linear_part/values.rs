@@ -169,6 +169,14 @@ impl Contact {
         self.gap.is_constant() && self.offset.is_constant()
     }
 
+    /// Gap and rate by positions and velocities, where nothing of it moves.
+    pub(in crate::contact_equation) fn standing_gap(&self, state: &[f64]) -> Option<[f64; 2]> {
+        let Standing { gap, offset, .. } = self.standing.as_ref()?;
+        let (positions, velocities) = state.split_at(gap.len());
+        let [gap, rate] = [positions, velocities].map(|of| dot(gap.as_slice(), of));
+        Some([gap - offset, rate])
+    }
+
     /// The offset of one that stands.
     pub(in crate::contact_equation) fn constant_offset(&self) -> f64 {
         self.offset.value(0.0, 0)

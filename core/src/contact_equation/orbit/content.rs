@@ -33,6 +33,11 @@ const FOLLOWED: f64 = FRAC_PI_4;
 /// What changes a signal by less than this part of its largest is rounding.
 const ROUNDING: f64 = 1e-14;
 
+/// Parts of what rings of a pair.
+pub(super) const RINGS: usize = 3;
+/// What turns by so many radians while it decays by a factor of e rings.
+const TURNING: f64 = 4.0;
+
 /// What a pair does on an interval beside what it is held at, or a part of that.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Ringing {
@@ -48,7 +53,7 @@ pub(super) struct Ringing {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Content {
     /// By pairs: what turns, or both parts of what does not, and what is in resonance.
-    rings: Vec<[Ringing; 3]>,
+    rings: Vec<[Ringing; RINGS]>,
 }
 
 impl Content {
@@ -59,7 +64,7 @@ impl Content {
         let whole = (to - from) / values.base;
         let blocks = &values.linear.blocks;
         let free = |(r, block): (usize, &Block)| free(block, pair(&passed.free, r), whole);
-        let mut rings: Vec<[Ringing; 3]> = blocks.iter().enumerate().map(free).collect();
+        let mut rings: Vec<[Ringing; RINGS]> = blocks.iter().enumerate().map(free).collect();
         let count = motion.equations.skeleton.intervals[interval].nodes.count();
         let forced = passed.forced.chunks_exact(2 * blocks.len());
         let turning = |block: &&Block| block.real_exponents().is_none();
@@ -99,13 +104,28 @@ impl Content {
     }
 
     /// Of a pair.
-    pub(super) fn rings(&self, block: usize) -> &[Ringing; 3] {
+    pub(super) fn rings(&self, block: usize) -> &[Ringing; RINGS] {
         &self.rings[block]
+    }
+
+    /// What is left of each after a time, pair by pair.
+    pub(super) fn left(&self, time: f64) -> Vec<f64> {
+        let rings = self.rings.iter().flatten();
+        rings.map(|of| (of.decay * time).exp()).collect()
+    }
+
+    /// The fastest decay of what turns meanwhile, if it turns faster than this and has more than a pair may have by rounding.
+    pub(super) fn decay(&self, turns: f64, rounding: impl Fn(usize) -> f64) -> f64 {
+        let rings = self.rings.iter().enumerate();
+        let rings = rings.flat_map(|(r, rings)| rings.iter().map(move |of| (r, of)));
+        let turning = rings.filter(|(_, of)| of.turns > turns.max(-TURNING * of.decay));
+        let ringing = turning.filter(|(r, of)| of.most[0] > rounding(*r));
+        ringing.fold(0.0, |most: f64, (_, of)| most.max(-of.decay))
     }
 }
 
 /// What a pair does within a time from these states, if nothing acts on it.
-fn free(block: &Block, states: Pair, time: f64) -> [Ringing; 3] {
+fn free(block: &Block, states: Pair, time: f64) -> [Ringing; RINGS] {
     let none = Ringing::default();
     let Some(exponents) = block.real_exponents() else {
         let ringing = Ringing {
@@ -131,6 +151,8 @@ fn free(block: &Block, states: Pair, time: f64) -> [Ringing; 3] {
 /// What a mode does to a signal.
 #[derive(Debug, Clone, Copy)]
 struct Ripple {
+    /// Its place among all that rings.
+    place: usize,
     /// How fast it turns or decays.
     turns: f64,
     /// Bounds of its values and of their rates.
@@ -195,9 +217,11 @@ impl Ripples {
         }
     }
 
-    pub(super) fn add(&mut self, turns: f64, mean: f64, [value, rate]: [f64; 2]) {
+    /// What rings at a place among all that does.
+    pub(super) fn add(&mut self, place: usize, turns: f64, mean: f64, [value, rate]: [f64; 2]) {
         if value > 0.0 || rate > 0.0 {
             self.of.push(Ripple {
+                place,
                 turns,
                 value,
                 rate,
@@ -214,6 +238,23 @@ impl Ripples {
 
     pub(super) fn sort(&mut self) {
         self.of.sort_unstable_by(|a, b| b.turns.total_cmp(&a.turns));
+        self.sum();
+    }
+
+    /// The same later, when so much is left of each.
+    pub(super) fn later(&self, left: &[f64]) -> Self {
+        let mut later = Self::with_room(self.of.len());
+        (later.steady, later.moves) = (self.steady, self.moves);
+        later.of.extend(self.of.iter().map(|of| Ripple {
+            value: left[of.place] * of.value,
+            rate: left[of.place] * of.rate,
+            ..*of
+        }));
+        later.sum();
+        later
+    }
+
+    fn sum(&mut self) {
         self.sums.clear();
         let mut sum = Fast {
             mean: f64::NEG_INFINITY,

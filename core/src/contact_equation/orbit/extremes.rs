@@ -2,6 +2,7 @@
 //!
 //! Signals are sampled: eight times in the shortest period of the load, the directions that move and those modes whose ringing makes up the rates but for a tenth, six
 //! times on an interval at least. Where the motion is in closed form each has as many samples as it asks for itself, of a [grid](super::grid) that all of them share. Where
+//! what rings decays in a part of an interval, coordinates have as many in each of its [layers](super::layers) as what is left of the ringing asks for. Where
 //! forces are unknown at nodes all have the same: those of the pass where its nodes are dense enough, else those that gaps ask for. What rings faster is bounded,
 //! and followed where an extreme may depend on it: see [`search`](super::search).
 //!
@@ -15,14 +16,16 @@
 //!
 //! Source: de Boor (2001), A Practical Guide to Splines, chapter IV (cubic Hermite interpolation).
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::Range;
 
 use super::content::Content;
 use super::grid::Grid;
+use super::layers::{Grids, Layer};
 use super::motion::Motion;
-use super::search::{Cubic, Largest, Part, extreme};
+use super::pieces::Part;
+use super::search::{Cubic, Largest, extreme};
 use super::signal::{Look, Of, Signal, Term};
 use super::sums::integrals_of;
 use crate::contact_equation::equations::pass_results::GapExtreme;
@@ -32,17 +35,13 @@ use crate::contact_equation::skeleton::placement::Told;
 use crate::numeric::roots::Place;
 
 /// Samples of a rate in the shortest period of what is followed by samples alone.
-const SAMPLES: f64 = 8.0;
+pub(super) const SAMPLES: f64 = 8.0;
 /// The same at least on an interval.
 const FEWEST: f64 = 6.0;
 /// More are not taken, however fast the motion is.
 const MOST: f64 = 1e6;
 /// What makes up less than this part of the rates of a signal is not followed by samples alone.
-const PART: f64 = 0.1;
-/// Grids are at most so many times finer than the load asks for, as a power of two.
-const FINEST: usize = 10;
-/// Beyond the coarsest one they have no more samples.
-const FULLEST: usize = 1 << 14;
+pub(super) const PART: f64 = 0.1;
 /// Of so many modes all are followed by samples.
 const FEW: usize = 1;
 /// Two extremes of a gap as near as this are one.
@@ -58,9 +57,9 @@ const ASIDE: f64 = 1e-3;
 pub(in crate::contact_equation) struct Sampled {
     pub(super) interval: usize,
     pub(super) content: Content,
-    /// Where nothing is unknown at nodes, grids, each twice as fine as the one before; and how many parts the first has.
-    grids: Vec<OnceCell<Grid>>,
-    parts: usize,
+    /// Where nothing is unknown at nodes, grids of all of it, and of its layers.
+    grids: Option<Grids>,
+    pub(super) layers: Vec<Layer>,
     phases: Vec<f64>,
     states: Vec<f64>,
     /// States at other phases, by the bits of these.
@@ -183,18 +182,17 @@ fn farthest(motion: &Motion<'_>, sampled: &[Sampled], of: Of<'_>) -> [Place; 2] 
     let mut ends = [none(f64::INFINITY), none(f64::NEG_INFINITY)];
     let parts = sampled.iter().map(|sampled| {
         let signal = Signal::new(motion, sampled, of);
-        let samples = signal.samples();
-        Part { signal, samples }
+        let pieces = signal.pieces();
+        Part { signal, pieces }
     });
     let mut parts: Vec<Part<'_, '_>> = parts.collect();
-    for Part { samples, .. } in &parts {
-        for (&x, &value) in samples.phases.iter().zip(&samples.values) {
-            if value < ends[0].value {
-                ends[0] = Place { x, value };
-            }
-            if value > ends[1].value {
-                ends[1] = Place { x, value };
-            }
+    for piece in parts.iter().flat_map(|part| &part.pieces) {
+        let [low, high] = piece.ends();
+        if low.value < ends[0].value {
+            ends[0] = low;
+        }
+        if high.value > ends[1].value {
+            ends[1] = high;
         }
     }
     let range = ends[1].value - ends[0].value;
@@ -253,8 +251,8 @@ impl Sampled {
                 let mut sampled = Self {
                     interval,
                     content: Content::of(motion, interval),
-                    grids: Vec::new(),
-                    parts: 0,
+                    grids: None,
+                    layers: Vec::new(),
                     phases: Vec::new(),
                     states: Vec::new(),
                     others: RefCell::default(),
@@ -271,8 +269,11 @@ impl Sampled {
         let of = &motion.equations.skeleton.intervals[self.interval];
         if motion.is_closed(self.interval) {
             let parts = (SAMPLES * motion.moves(self.interval) * (to - from)).max(FEWEST);
-            self.parts = parts.ceil().min(MOST) as usize;
-            self.grids.resize_with(FINEST + 1, OnceCell::new);
+            let parts = parts.ceil().min(MOST) as usize;
+            self.grids = Some(Grids::new([from, to], parts));
+            if motion.values(self.interval).linear.blocks.len() > FEW {
+                self.layers = Layer::of(motion, self.interval, &self.content);
+            }
             return;
         }
         let fastest = motion.moves(self.interval).max(self.rings(motion));
@@ -315,17 +316,10 @@ impl Sampled {
         turns.fold(0.0, f64::max) / values.base / std::f64::consts::TAU
     }
 
-    /// Samples that are so near to each other, in phase; nothing where forces are unknown at nodes.
+    /// Samples near enough to each other for what turns so fast, by the phase; nothing where forces are unknown at nodes.
     pub(super) fn grid(&self, motion: &Motion<'_>, turns: f64) -> Option<&Grid> {
-        let [from, to] = motion.phases(self.interval);
-        let parts = SAMPLES * turns * (to - from) / std::f64::consts::TAU;
-        let level = (parts / self.parts as f64).log2().ceil().max(0.0) as usize;
-        let mut level = level.min(self.grids.len().checked_sub(1)?);
-        while level > 0 && self.parts << level > FULLEST {
-            level -= 1;
-        }
-        let grid = || Grid::new(motion, self.interval, self.parts << level);
-        Some(self.grids[level].get_or_init(grid))
+        let grids = self.grids.as_ref()?;
+        Some(grids.at(motion, self.interval, turns))
     }
 
     /// What is followed by samples of a signal turns so fast, in a unit of phase.
@@ -355,8 +349,9 @@ impl Sampled {
     /// At how many phases states are known.
     #[cfg(test)]
     pub(in crate::contact_equation) fn count(&self) -> usize {
-        let grids = self.grids.iter().filter_map(OnceCell::get);
-        let on_grids: usize = grids.map(|grid| grid.phases.len()).sum();
+        let grids = self.grids.iter();
+        let grids = grids.chain(self.layers.iter().map(|layer| &layer.grids));
+        let on_grids: usize = grids.map(Grids::count).sum();
         on_grids + self.phases.len() + self.others.borrow().len()
     }
 

@@ -54,14 +54,13 @@ impl Gaps<'_> {
         state
     }
 
-    /// States of the linear part at a phase.
-    fn states(&self, phase: f64) -> Vec<f64> {
-        self.values.linear.states(&self.state(phase))
-    }
-
     /// Gap and rate by the time.
     pub(in crate::contact_equation) fn gap(&self, contact: usize, phase: f64) -> [f64; 2] {
-        let states = self.states(phase);
+        let state = self.state(phase);
+        if let Some(found) = self.values.contacts[contact].standing_gap(&state) {
+            return found;
+        }
+        let states = self.values.linear.states(&state);
         let mut rows: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; states.len()]);
         let instant = Instant {
             tau: phase,

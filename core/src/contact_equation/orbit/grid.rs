@@ -11,8 +11,10 @@
 
 use std::cell::OnceCell;
 
+use multiversion::multiversion;
+
 use super::motion::Motion;
-use crate::contact_equation::linear_part::block::{Block, Pair, Square, add_both};
+use crate::contact_equation::linear_part::block::{Block, Pair, Square};
 use crate::contact_equation::linear_part::linear::Seen;
 use crate::contact_equation::linear_part::values::{pair, turn};
 
@@ -26,9 +28,13 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Of so many parts.
-    pub(super) fn new(motion: &Motion<'_>, interval: usize, parts: usize) -> Self {
-        let [from, to] = motion.phases(interval);
+    /// Of so many parts between two phases of an interval.
+    pub(super) fn new(
+        motion: &Motion<'_>,
+        interval: usize,
+        [from, to]: [f64; 2],
+        parts: usize,
+    ) -> Self {
         let values = motion.values(interval);
         let phase = |sample: usize| from + (to - from) * (sample as f64 / parts as f64);
         let phases: Vec<f64> = (0..=parts).map(phase).collect();
@@ -51,6 +57,10 @@ impl Grid {
         }
     }
 
+    fn ends(&self) -> [f64; 2] {
+        [self.phases[0], self.phases[self.phases.len() - 1]]
+    }
+
     /// Adds what a wave of this amplitude is, and its rate where it turns so fast.
     pub(super) fn add_wave(
         &self,
@@ -60,8 +70,8 @@ impl Grid {
         [values, rates]: [&mut [f64]; 2],
     ) {
         let [cosines, sines] = &self.waves[wave];
-        add_both([cosines, sines], [re, -im], values);
-        add_both([cosines, sines], [-turns * im, -turns * re], rates);
+        let both = [[re, -im], [-turns * im, -turns * re]];
+        add_seen([cosines, sines], both, values, rates);
     }
 
     /// Adds what a row sees of a pair.
@@ -73,16 +83,50 @@ impl Grid {
         [values, rates]: [&mut [f64]; 2],
     ) {
         let [first, second] = self.pairs[seen.block].get_or_init(|| {
-            let [from, to] = motion.phases(interval);
+            let [begin, _] = motion.phases(interval);
+            let [from, to] = self.ends();
             let of = motion.values(interval);
             let block: &Block = &of.linear.blocks[seen.block];
             let parts = self.phases.len() - 1;
             let step = (to - from) / of.base / parts as f64;
-            let free = pair(&motion.equations.passed[interval].free, seen.block);
+            let mut free = pair(&motion.equations.passed[interval].free, seen.block);
+            if from > begin {
+                free = block.carried(block.kernel((from - begin) / of.base), free);
+            }
             doubled(free, parts, |m| block.exponential(step * m as f64))
         });
-        add_both([first, second], seen.position, values);
-        add_both([first, second], seen.rate, rates);
+        let both = [seen.position, seen.rate];
+        add_seen([first, second], both, values, rates);
+    }
+}
+
+/// Adds what two rows see of pairs.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn add_seen(
+    [first, second]: [&[f64]; 2],
+    [position, rate]: [Pair; 2],
+    values: &mut [f64],
+    rates: &mut [f64],
+) {
+    let to = values.iter_mut().zip(rates);
+    for ((a, b), (value, slope)) in first.iter().zip(second).zip(to) {
+        *value += position[0] * a + position[1] * b;
+        *slope += rate[0] * a + rate[1] * b;
+    }
+}
+
+/// Writes the products of a matrix and pairs.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn write_products(
+    by: Square,
+    [first, second]: [&[f64]; 2],
+    to_first: &mut [f64],
+    to_second: &mut [f64],
+) {
+    let to = to_first.iter_mut().zip(to_second);
+    for ((a, b), (x, y)) in first.iter().zip(second).zip(to) {
+        *x = by[0][0] * a + by[0][1] * b;
+        *y = by[1][0] * a + by[1][1] * b;
     }
 }
 
@@ -101,9 +145,152 @@ fn doubled(begin: Pair, parts: usize, power: impl Fn(usize) -> Square) -> [Vec<f
         let (first, first_next) = first.split_at_mut(known);
         let (second, second_next) = second.split_at_mut(known);
         let known_ones = [&first[..more], &second[..more]];
-        add_both(known_ones, by[0], &mut first_next[..more]);
-        add_both(known_ones, by[1], &mut second_next[..more]);
+        write_products(by, known_ones, first_next, second_next);
         known += more;
     }
     both
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact_equation::linear_part::linear::of_states;
+    use crate::contact_equation::orbit::extremes::Sampled;
+    use crate::contact_equation::orbit::signal::{Of, Signal};
+    use crate::contact_equation::tests::first;
+
+    crate::oscillator! {
+        /// Modes that turn, slowly, fast and so fast that they soon decay, and one that does not turn; the stop moves all of them.
+        Modes(x, y, z, w) {
+            law stop(g) { g > 0 => 40*g, else => 0 }
+            let gap = x + 0.4*y + 0.3*z - 0.2*w - 0.5;
+            ddot(x) + 0.1*dot(x) + x + stop(gap) = 0.5*cos(omega*t) + 0.1;
+            ddot(y) + 0.3*dot(y) + 90*y + 0.4*stop(gap) = 0.2*sin(2*omega*t);
+            ddot(z) + 12*dot(z) + 90_000*z + 0.3*stop(gap) = 0;
+            ddot(w) + 9*dot(w) + 4*w - 0.2*stop(gap) = 0;
+        }
+    }
+
+    /// Looks at every interval that takes time of an orbit of the modes.
+    fn each_interval(mut look: impl FnMut(&Motion<'_>, &Sampled)) {
+        let system = Modes {};
+        let (mut equations, u) = first(&system, None, 1.1, [16, 1]);
+        equations.compute(&u, false);
+        assert!(!equations.failed && !equations.configurations.is_empty());
+        let motion = Motion::of(&equations);
+        assert!(motion.sampled().len() > 1);
+        for sampled in motion.sampled() {
+            assert!(motion.is_closed(sampled.interval));
+            look(&motion, sampled);
+        }
+    }
+
+    /// A coordinate and its rate at a phase, by exponentials of their own.
+    fn exactly(motion: &Motion<'_>, interval: usize, phase: f64, coordinate: usize) -> [f64; 2] {
+        let linear = &motion.equations.values.linear;
+        let mut states = vec![0.0; motion.equations.skeleton.order];
+        motion.states(interval, phase, &mut states);
+        of_states(&linear.rows[coordinate], &states)
+    }
+
+    #[test]
+    fn samples_of_grids_are_those_instant_by_instant() {
+        each_interval(|motion, sampled| {
+            let interval = sampled.interval;
+            let [from, to] = motion.phases(interval);
+            let parts_of = [[0.0, 1.0], [0.25, 0.5], [0.7, 1.0]];
+            let parts_of = parts_of.map(|ends| ends.map(|part| from + part * (to - from)));
+            for (ends, parts) in parts_of.into_iter().zip([1, 13, 200]) {
+                let grid = Grid::new(motion, interval, ends, parts);
+                assert_eq!(grid.phases.len(), parts + 1);
+                for coordinate in 0..4 {
+                    let signal = Signal::new(motion, sampled, Of::Coordinate(coordinate));
+                    let samples = signal.on(&grid);
+                    for (place, phase) in grid.phases.iter().enumerate() {
+                        let exact = exactly(motion, interval, *phase, coordinate);
+                        let [value, rate] = [samples.values[place], samples.rates[place]];
+                        let at = format!("{interval} {ends:?} {parts} {coordinate} {place}");
+                        assert!((value - exact[0]).abs() < 1e-13, "{at}");
+                        assert!((rate - exact[1]).abs() < 1e-11, "{at}");
+                    }
+                }
+            }
+        });
+    }
+
+    /// The pass has left the states at both ends of an interval.
+    #[test]
+    fn grids_begin_and_end_where_their_interval_does() {
+        each_interval(|motion, sampled| {
+            let interval = sampled.interval;
+            let ends = motion.phases(interval);
+            let grid = Grid::new(motion, interval, ends, 9);
+            assert_eq!(grid.phases[0], ends[0]);
+            assert!((grid.phases[9] - ends[1]).abs() <= f64::EPSILON * ends[1].abs());
+            let linear = &motion.equations.values.linear;
+            let left = &motion.equations.passed[interval].states;
+            let order = motion.equations.skeleton.order;
+            let left = [&left[..order], &left[left.len() - order..]];
+            for coordinate in 0..4 {
+                let signal = Signal::new(motion, sampled, Of::Coordinate(coordinate));
+                let samples = signal.on(&grid);
+                for (place, states) in [0, 9].into_iter().zip(left) {
+                    let [value, rate] = of_states(&linear.rows[coordinate], states);
+                    assert!((samples.values[place] - value).abs() < 1e-13);
+                    assert!((samples.rates[place] - rate).abs() < 1e-11);
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn a_grid_of_no_length_is_one_state() {
+        each_interval(|motion, sampled| {
+            let interval = sampled.interval;
+            let [from, to] = motion.phases(interval);
+            for phase in [from, 0.5 * (from + to)] {
+                let grid = Grid::new(motion, interval, [phase; 2], 6);
+                for coordinate in 0..4 {
+                    let signal = Signal::new(motion, sampled, Of::Coordinate(coordinate));
+                    let samples = signal.on(&grid);
+                    let exact = exactly(motion, interval, phase, coordinate);
+                    for place in 0..=6 {
+                        assert_eq!(grid.phases[place], phase);
+                        assert!((samples.values[place] - exact[0]).abs() < 1e-13);
+                        assert!((samples.rates[place] - exact[1]).abs() < 1e-11);
+                    }
+                }
+            }
+        });
+    }
+
+    /// Intervals have several layers here. Instants of the dense samples are a thousandth of a radian of the fastest mode apart.
+    #[test]
+    fn extremes_are_those_of_dense_samples() {
+        let mut dense = [[f64::INFINITY, f64::NEG_INFINITY]; 4];
+        let mut found = Vec::new();
+        let mut layers = 0;
+        each_interval(|motion, sampled| {
+            let [from, to] = motion.phases(sampled.interval);
+            let samples = (3e5 * (to - from) / motion.equations.values.base) as usize + 2;
+            for sample in 0..=samples {
+                let phase = from + (to - from) * (sample as f64 / samples as f64);
+                for (coordinate, ends) in dense.iter_mut().enumerate() {
+                    let [value, _] = exactly(motion, sampled.interval, phase, coordinate);
+                    *ends = [ends[0].min(value), ends[1].max(value)];
+                }
+            }
+            layers = layers.max(sampled.layers.len());
+            found = motion.coordinate_extremes().to_vec();
+        });
+        assert!(layers > 2, "{layers}");
+        for (found, dense) in found.iter().zip(dense) {
+            let size = dense[1] - dense[0];
+            assert!((found[0].value - dense[0]).abs() < 1e-6 * size, "{dense:?}");
+            assert!((found[1].value - dense[1]).abs() < 1e-6 * size, "{dense:?}");
+            // Samples are never beyond an extreme.
+            assert!(found[0].value <= dense[0] + 1e-13);
+            assert!(found[1].value >= dense[1] - 1e-13);
+        }
+    }
 }

@@ -175,12 +175,15 @@ impl<'e> Motion<'e> {
             passed,
             ..
         } = self.equations;
+        if passed[interval].forced.is_empty() {
+            return false;
+        }
         let of = &skeleton.intervals[interval];
         let [from, to] = passed[interval].phases;
         let whole = (to - from) / values.base;
         let blocks = values.linear.blocks.iter();
         let fastest = blocks.map(Block::rate).fold(0.0, f64::max);
-        !passed[interval].forced.is_empty() && !of.nodes.follows(fastest * whole.abs())
+        !of.nodes.follows(fastest * whole.abs())
     }
 
     /// A position and its rate at a phase within an interval, of the pairs that a row sees: where these are few, they alone are followed.

@@ -20,12 +20,14 @@
 //! too fast. So a mode that does not ring costs nothing, and one that does is followed where the rate of all others is as small as its own.
 //!
 //! The largest value is looked for in the ways in which it may be by (2), from that with the highest bound on; all others are left (Land and Doig).
+//! Of a block of ways it is known what its samples and rates are at most, so that most blocks are left at once. Where an interval has
+//! [layers](super::layers), samples and bounds are those of each of them.
 //!
 //! Source: de Boor (2001), A Practical Guide to Splines, chapter IV (cubic Hermite interpolation and its error); Land and Doig (1960), An automatic method of
 //! solving discrete programming problems, Econometrica 28 (bounds).
 
 use super::content::Fast;
-use super::extremes::Samples;
+use super::pieces::{Part, Piece, TOGETHER, Way};
 use super::signal::{Look, Signal};
 use crate::numeric::roots::Place;
 
@@ -193,20 +195,6 @@ fn beyond(last: &Look, here: &Look, base: f64) -> Option<f64> {
     x.is_finite().then_some(x)
 }
 
-/// Two samples beside each other.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Way {
-    /// Place among the signals.
-    pub(super) part: usize,
-    pub(super) ends: [Look; 2],
-}
-
-/// A signal on an interval, and its samples.
-pub(super) struct Part<'m, 'e> {
-    pub(super) signal: Signal<'m, 'e>,
-    pub(super) samples: Samples<'m>,
-}
-
 /// What a value may be above the cubic, without what rings too fast.
 #[derive(Debug, Clone, Copy)]
 struct Slack {
@@ -230,7 +218,9 @@ impl Largest<'_, '_, '_> {
     pub(super) fn search(&mut self) -> Place {
         let mut bounds: Vec<(f64, Way)> = Vec::new();
         for part in 0..self.parts.len() {
-            self.add_ways(part, &mut bounds);
+            for piece in 0..self.parts[part].pieces.len() {
+                self.add_ways(part, piece, &mut bounds);
+            }
         }
         bounds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
         for (bound, way) in bounds {
@@ -242,18 +232,25 @@ impl Largest<'_, '_, '_> {
         self.best
     }
 
-    /// Ways of a part in which it may be, with the bounds there. Most are far from it: of a cubic no more is asked than how far it may be above its ends.
-    fn add_ways(&self, part: usize, bounds: &mut Vec<(f64, Way)>) {
-        let Part { samples, .. } = &self.parts[part];
+    /// Ways of a piece in which it may be, with the bounds there. Most are far from it: of a cubic no more is asked than how far it may be above its ends.
+    fn add_ways(&self, part: usize, piece: usize, bounds: &mut Vec<(f64, Way)>) {
+        let Piece { samples, most, .. } = &self.parts[part].pieces[piece];
         let ways = samples.phases.windows(2).map(|ends| ends[1] - ends[0]);
         let wide = ways.fold(0.0, f64::max);
-        let slack = self.slack(part, wide);
+        let slack = self.slack(part, piece, wide);
         let none = slack.fast.is_none();
         let wrong = 2.0 * slack.fast.value + 0.5 * wide / self.base * slack.fast.rate;
         let least = self.sign * self.best.value - slack.of - wrong;
         let (steep, sign) = (wide / self.base, self.sign);
-        let pairs = samples.values.windows(2).zip(samples.rates.windows(2));
-        for (index, (values, rates)) in pairs.enumerate() {
+        let ways = samples.phases.len() - 1;
+        let far = most.iter().enumerate();
+        let far = far.filter(|(_, most)| most.highest(sign) + most.rate * steep > least);
+        let ways = far.flat_map(|(block, _)| {
+            let first = block * TOGETHER;
+            first..(first + TOGETHER).min(ways)
+        });
+        for index in ways {
+            let [values, rates] = [&samples.values, &samples.rates].map(|of| &of[index..index + 2]);
             let top = sign * rates[0] > 0.0 && sign * rates[1] <= 0.0;
             if !top && none {
                 continue;
@@ -267,7 +264,7 @@ impl Largest<'_, '_, '_> {
                 continue;
             }
             let ends = [samples.look(index), samples.look(index + 1)];
-            let way = Way { part, ends };
+            let way = Way { part, piece, ends };
             let bound = self.bound(&way, ends[1].x - ends[0].x);
             if self.may_exceed(bound) {
                 bounds.push((bound, way));
@@ -275,19 +272,19 @@ impl Largest<'_, '_, '_> {
         }
     }
 
-    /// What a value may be above the cubic in all ways of a part that are no wider.
-    fn slack(&self, part: usize, wide: f64) -> Slack {
-        let signal = &self.parts[part].signal;
-        let h = wide / self.base;
-        let fast = signal.fast(h);
-        let forced = if signal.is_forced() {
+    /// What a value may be above the cubic in all ways of a piece that are no wider.
+    fn slack(&self, part: usize, piece: usize, wide: f64) -> Slack {
+        let of = &self.parts[part];
+        let (ripples, h) = (of.ripples(piece), wide / self.base);
+        let fast = of.fast(piece, h);
+        let forced = if of.signal.is_forced() {
             FORETOLD * self.range
         } else {
             0.0
         };
         // What is not fast for a narrower way is in the fourth derivative there.
-        let slow = signal.fourth(0.0) * h.powi(4) / 384.0;
-        let slow = slow.min(signal.fourth(h) * h.powi(4) / 384.0 + fast.value);
+        let slow = ripples.fourth(0.0) * h.powi(4) / 384.0;
+        let slow = slow.min(ripples.fourth(h) * h.powi(4) / 384.0 + fast.value);
         Slack {
             of: slow + forced,
             fast,
@@ -316,8 +313,8 @@ impl Largest<'_, '_, '_> {
     fn bound(&self, way: &Way, wide: f64) -> f64 {
         let [before, next] = way.ends;
         let cubic = Cubic::of(&before, &next, self.base);
-        let signal = &self.parts[way.part].signal;
-        let fast = signal.fast_from(cubic.h, before.x);
+        let part = &self.parts[way.part];
+        let fast = part.fast_in(way, cubic.h);
         let top = self.has_top(&way.ends);
         if !top && fast.is_none() {
             return f64::NEG_INFINITY;
@@ -328,8 +325,8 @@ impl Largest<'_, '_, '_> {
         } else {
             ends
         };
-        let slow = signal.fourth(cubic.h) * cubic.h.powi(4) / 384.0;
-        let forced = if signal.is_forced() {
+        let slow = part.ripples(way.piece).fourth(cubic.h) * cubic.h.powi(4) / 384.0;
+        let forced = if part.signal.is_forced() {
             let part = (next.x - before.x) / wide;
             FORETOLD * self.range * part.powi(4)
         } else {
@@ -340,8 +337,7 @@ impl Largest<'_, '_, '_> {
 
     fn look(&mut self, way: Way, wide: f64) {
         let cubic = Cubic::of(&way.ends[0], &way.ends[1], self.base);
-        let signal = &mut self.parts[way.part].signal;
-        let fast = signal.fast_from(cubic.h, way.ends[0].x);
+        let fast = self.parts[way.part].fast_in(&way, cubic.h);
         if fast.is_none() || cubic.turns_once(fast) {
             if !self.has_top(&way.ends) {
                 return;
@@ -350,6 +346,7 @@ impl Largest<'_, '_, '_> {
             self.see(&found);
             return;
         }
+        let signal = &mut self.parts[way.part].signal;
         let middle = signal.at_shared(0.5 * (way.ends[0].x + way.ends[1].x));
         self.see(&middle);
         let halves = [[way.ends[0], middle], [middle, way.ends[1]]];

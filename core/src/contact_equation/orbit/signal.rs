@@ -16,10 +16,12 @@ use std::borrow::Cow;
 
 use nalgebra::Complex;
 
-use super::content::{Content, Fast, Ripples, unless_rounding};
-use super::extremes::{Sampled, Samples};
+use super::content::{Content, Fast, RINGS, Ripples, unless_rounding};
+use super::extremes::{PART, Sampled, Samples};
 use super::grid::Grid;
+use super::layers::Layer;
 use super::motion::Motion;
+use super::pieces::Piece;
 use super::sums::Exponential;
 use crate::contact_equation::collocation::nodes::Nodes;
 use crate::contact_equation::linear_part::block::{Pair, times};
@@ -197,12 +199,12 @@ impl<'m, 'e> Signal<'m, 'e> {
 
     /// What a pair does to it, in a row that turns.
     fn add_rings(&mut self, content: &Content, seen: &Seen, turning: f64) {
-        for ringing in content.rings(seen.block) {
+        for (part, ringing) in content.rings(seen.block).iter().enumerate() {
             let of = |row: Pair| row[0].abs() * ringing.most[0] + row[1].abs() * ringing.most[1];
             let most = [of(seen.position), of(seen.rate)];
             self.size += most[0];
-            self.ripples
-                .add(ringing.turns + turning, ringing.decay, most);
+            let (place, turns) = (RINGS * seen.block + part, ringing.turns + turning);
+            self.ripples.add(place, turns, ringing.decay, most);
         }
     }
 
@@ -241,6 +243,22 @@ impl<'m, 'e> Signal<'m, 'e> {
         Samples::of(phases, looks.map(|look| [look.value, look.rate]))
     }
 
+    /// The same piece by piece.
+    pub(super) fn pieces(&self) -> Vec<Piece<'m>> {
+        let (motion, sampled) = (self.motion, self.sampled);
+        if sampled.layers.is_empty() || self.whole.is_some() {
+            return vec![Piece::new(self.samples(), None, self.phases()[0])];
+        }
+        let layers = sampled.layers.iter();
+        let piece = |layer: &'m Layer| {
+            let ripples = self.ripples.later(&layer.left);
+            let turns = ripples.most(PART) / self.base();
+            let samples = self.on(layer.grids.at(motion, self.interval, turns));
+            Piece::new(samples, Some(ripples), layer.begin())
+        };
+        layers.map(piece).collect()
+    }
+
     /// Value and rate at a phase of what is followed as the motion is.
     fn followed(&self, whole: Whole, x: f64) -> [f64; 2] {
         match whole {
@@ -257,7 +275,7 @@ impl<'m, 'e> Signal<'m, 'e> {
     }
 
     /// On a grid.
-    fn on(&self, grid: &'m Grid) -> Samples<'m> {
+    pub(super) fn on(&self, grid: &'m Grid) -> Samples<'m> {
         let mut values = vec![self.offset; grid.phases.len()];
         let mut rates = vec![0.0; grid.phases.len()];
         for (index, (harmonic, amplitude)) in self.waves.iter().enumerate() {
@@ -427,9 +445,9 @@ impl<'m, 'e> Signal<'m, 'e> {
         unless_rounding(fast, self.size)
     }
 
-    /// See [`Ripples::fourth`].
-    pub(super) fn fourth(&self, time: f64) -> f64 {
-        self.ripples.fourth(time)
+    /// What rings in it.
+    pub(super) fn ripples(&self) -> &Ripples {
+        &self.ripples
     }
 
     /// See [`Ripples::most`].

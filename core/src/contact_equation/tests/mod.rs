@@ -89,7 +89,7 @@ crate::oscillator! {
     }
 }
 
-fn first(
+pub(in crate::contact_equation) fn first(
     system: &dyn System,
     vary: Option<&str>,
     omega: f64,

@@ -29,7 +29,9 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use crate::numeric::linear::{Group, LANES, Lu, Matrix, Singular, dot, times_columns};
+use crate::numeric::linear::{
+    Group, LANES, Lu, Matrix, Placed, Singular, add_product, dot, times_columns,
+};
 
 /// What a link has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,6 +89,7 @@ pub(crate) struct Chain {
     /// Some columns of `D`, row by row, and of `S`.
     solved: Vec<Group>,
     known: Vec<Group>,
+    placed: Vec<Placed>,
 }
 
 impl Size {
@@ -159,6 +162,11 @@ impl Link {
         ]
     }
 
+    /// All rows of `E`, to be written, of a link that couples all states.
+    pub(crate) fn all_carried_mut(&mut self) -> &mut [f64] {
+        &mut self.carried
+    }
+
     /// Everything is zero, but that states go on as they are.
     pub(crate) fn clear(&mut self) {
         self.matrix.clear();
@@ -174,7 +182,11 @@ impl Link {
     }
 
     /// `E S` of (5), added.
-    fn carry(&self, states: &[f64], next: &mut [f64], columns: usize) {
+    fn carry(&self, states: &[f64], next: &mut [f64], columns: usize, placed: &mut Vec<Placed>) {
+        if self.size.couples {
+            add_product(&self.carried, states, columns, next, placed);
+            return;
+        }
         for (row, to) in next.chunks_exact_mut(columns).enumerate() {
             let (carried, of) = self.carried(row);
             let of = states[of.start * columns..of.end * columns].chunks_exact(columns);
@@ -194,10 +206,11 @@ impl Link {
         states: &[f64],
         next: &mut [f64],
         [solved, known]: [&mut Vec<Group>; 2],
+        placed: &mut Vec<Placed>,
     ) -> Result<(), Singular> {
         let count = self.count();
         let columns = states.len() / (self.carried.len() / self.width).max(1);
-        self.carry(states, next, columns);
+        self.carry(states, next, columns, placed);
         if count == 0 {
             return Ok(());
         }
@@ -260,6 +273,7 @@ impl Chain {
             next: vec![0.0; states],
             solved: Vec::with_capacity(links.iter().map(Link::count).max().unwrap_or(0)),
             known: Vec::with_capacity(states),
+            placed: Vec::with_capacity(states),
             links,
             reads: Vec::new(),
             factors: Vec::new(),
@@ -299,7 +313,7 @@ impl Chain {
     /// Goes over a link whose equations are written, from `S` in front of it to that behind it, which has `G`.
     pub(crate) fn pass(&mut self, link: usize, states: &[f64], next: &mut [f64]) {
         let room = [&mut self.solved, &mut self.known];
-        if let Err(at) = self.links[link].eliminate(states, next, room) {
+        if let Err(at) = self.links[link].eliminate(states, next, room, &mut self.placed) {
             self.singular = Some(at);
         }
     }

@@ -14,9 +14,11 @@ mod eliminate;
 mod products;
 #[cfg(test)]
 mod tests;
+mod wide;
 
 use eliminate::{eliminate, substitute, substitute_groups};
 pub use products::{dot, times_columns, weighted_dot};
+pub(crate) use wide::{Placed, add_product};
 
 /// Entries are handled in groups of this many; it is the width of a panel too.
 pub const LANES: usize = 8;
