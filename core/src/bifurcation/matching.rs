@@ -89,22 +89,23 @@ struct End<'b> {
 }
 
 impl End<'_> {
-    /// Whether an orbit is no farther from the end than the event is. Where that is not known, what an orbit has beside one of a shorter period tells: it
-    /// vanishes at the event.
+    /// Whether an orbit is no farther from the end than the event is, whatever period that begins at. Where that is not known, the difference to the orbit half its period later tells: where it joins one of half the period, that
+    /// vanishes.
     fn reaches(&self, found: &Point) -> bool {
-        let whole = self.event.map_or_else(
-            || {
-                let all = beginnings(&self.point.orbit);
-                let apart = all.iter().map(|other| apart(self.point, &all[0], other));
-                if all.len() > 1 {
-                    apart.fold(0.0, f64::max)
-                } else {
-                    self.point.size()
-                }
-            },
-            |event| apart(self.point, &self.point.orbit.state(), &event.orbit.state()),
-        );
-        apart(self.point, &self.point.orbit.state(), &found.orbit.state()) <= BEYOND * whole
+        let own = beginnings(&self.point.orbit);
+        let state = self.point.orbit.state();
+        let whole = match self.event {
+            Some(event) => {
+                let others = beginnings(&event.orbit);
+                let others = others.iter().map(|other| apart(self.point, &state, other));
+                others.fold(f64::INFINITY, f64::min)
+            }
+            None if own.len() == self.point.orbit.period && own.len() > 1 => {
+                apart(self.point, &own[0], &own[own.len() / 2])
+            }
+            None => self.point.size(),
+        };
+        apart(self.point, &state, &found.orbit.state()) <= BEYOND * whole
     }
 }
 

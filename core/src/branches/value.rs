@@ -6,7 +6,7 @@
 //! ways of the method, and by way of the orbit half-way.
 
 use super::branch::Branch;
-use super::point::Point;
+use super::point::{Event, Point};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -55,7 +55,13 @@ pub(crate) fn orbits_at(
 ) -> Result<Vec<Point>, Error> {
     let chain = chain(&branch.points, &turns(branch));
     let search = |ends: [&Point; 2]| {
-        let mut left = Left { ways, looks: LOOKS };
+        let [a, b] = ends.map(|end| end.value);
+        let lies_inside = |event: &Event| (event.point.value - a) * (event.point.value - b) < 0.0;
+        let mut left = Left {
+            ways,
+            looks: LOOKS,
+            alike: !branch.events.iter().any(lies_inside),
+        };
         divided(&mut between, ends, value, HALVINGS, &mut left)
     };
     solutions(&chain, value, |point| point.value, search, is_same)
@@ -65,6 +71,8 @@ pub(crate) fn orbits_at(
 struct Left {
     ways: usize,
     looks: usize,
+    /// No event is known whose value is between those of the neighbours.
+    alike: bool,
 }
 
 /// The orbit at a value between two neighbours, from one of them, or else by way of others, with so many halvings and orbits left.
@@ -77,10 +85,10 @@ fn divided(
 ) -> Result<Point, Error> {
     let others = halvings > 0 && left.looks > 0;
     left.looks = left.looks.saturating_sub(1 + left.ways);
+    let of_one_verdict = left.alike;
     let lies_between = |found: &Point| {
         let whole = distance(a, b);
-        let outside = [a, b, found].map(outside);
-        let alike = outside[0] != outside[1] || outside[0] == outside[2];
+        let alike = !of_one_verdict || is_alike([a, b, found]);
         let is_near = |end: &&Point| distance(end, found) <= ASIDE * whole;
         alike && [a, b].iter().all(is_near)
     };
@@ -114,10 +122,18 @@ fn divided(
     }
 }
 
-/// How many multipliers are outside of the unit circle, where they are known: on another limb of the branch it is another number.
-fn outside(point: &Point) -> usize {
-    let multipliers = point.stability.multipliers.iter();
-    multipliers.filter(|m| m.norm() > 1.0).count()
+/// Whether an orbit has as many multipliers outside of the unit circle as two others, if these have one number and all are known: on another limb of
+/// the branch it is another one.
+fn is_alike(points: [&Point; 3]) -> bool {
+    let outside = points.map(|point| {
+        let multipliers = &point.stability.multipliers;
+        let outside = multipliers.iter().filter(|m| m.norm() > 1.0);
+        (!multipliers.is_empty()).then(|| outside.count())
+    });
+    match outside {
+        [Some(a), Some(b), Some(found)] => a != b || a == found,
+        _ => true,
+    }
 }
 
 /// How far the states of two orbits are apart.

@@ -7,8 +7,7 @@
 //! p(s) = a + (3 s^2 - 2 s^3) (b - a) + |b - a| (s (1 - s)^2 t_a + s^2 (s - 1) t_b)                               (1)
 //! ```
 //!
-//! (Hermite's cubic). Its error is of fourth order in the angle by which the step turns, so that limbs that are nearer to each other than steps are long
-//! are told apart.
+//! (Hermite's cubic). Limbs that go the same way are told apart if they are farther from each other than a twentieth of a step.
 
 use super::follow::CurvePoint;
 use crate::continuation::newton::Newton;

@@ -107,6 +107,8 @@ pub(crate) enum Halt {
     Stop,
     /// To go on from here with another number of unknowns.
     Resize,
+    /// To make the last step again.
+    Back,
 }
 
 /// What the visitor of a curve answers.
@@ -273,8 +275,8 @@ pub(crate) fn follow_until_stuck<P: AsProblem + ?Sized>(
             if let Some(from) = &position.previous
                 && let Continue::Break(halt) = visit(problem, newton, Visit::Between(from, point))
             {
-                if halt == Halt::Resize {
-                    if position.has_closed(newton) {
+                if halt != Halt::Stop {
+                    if halt == Halt::Resize && position.has_closed(newton) {
                         return Ok(Outcome::Stopped(Stop::Closed).into());
                     }
                     // The step has been looked at.

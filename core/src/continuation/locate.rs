@@ -208,7 +208,7 @@ fn search_along<P: AsProblem + ?Sized>(
     })
 }
 
-/// The point of the curve at a part of a step, as the arc length [over](ArcLength::over) it tells.
+/// The point of the curve at a part of a step, as the arc length along the first tangent tells.
 ///
 /// `None` if the correction fails.
 pub(crate) fn inside(
@@ -218,15 +218,38 @@ pub(crate) fn inside(
     part: f64,
     options: NewtonOptions,
 ) -> Option<CurvePoint> {
-    let Step { before: a, next: b } = step;
+    let arc = ArcLength::from(newton, step.before);
+    let length = arc.length(newton, step.before, step.next);
+    inside_by(problem, newton, step, (&arc, length), part, options)
+}
+
+/// The same, as the arc length [over](ArcLength::over) the step tells.
+pub(crate) fn inside_over(
+    problem: &mut dyn Problem,
+    newton: &mut Newton,
+    step: Step<'_>,
+    part: f64,
+    options: NewtonOptions,
+) -> Option<CurvePoint> {
     let arc = ArcLength::over(newton, step);
-    let length = arc.at(&b.u);
+    let length = arc.at(&step.next.u);
+    inside_by(problem, newton, step, (&arc, length), part, options)
+}
+
+fn inside_by(
+    problem: &mut dyn Problem,
+    newton: &mut Newton,
+    Step { before: a, next: b }: Step<'_>,
+    (arc, length): (&ArcLength, f64),
+    part: f64,
+    options: NewtonOptions,
+) -> Option<CurvePoint> {
     let value = f64::NAN;
     let [from, to] = [(0.0, a), (length, b)].map(|(x, point)| Side {
         place: Place { x, value },
         point: point.clone(),
     });
-    let trial = between([&from, &to], part * length, &arc);
+    let trial = between([&from, &to], part * length, arc);
     arc.corrected(problem, newton, trial, part * length, options)
 }
 
@@ -258,7 +281,8 @@ impl ArcLength {
         let [first, last] = [before, next].map(|at| norm.product(scale, &at.tangent, &chord));
         let whole = norm.length(scale, &chord);
         let leads = first.abs() > SLANTED * whole || last.abs() < first.abs();
-        if leads || first * last < 0.0 {
+        let is_way = whole > 0.0 && first * last >= 0.0;
+        if leads || !is_way {
             return Self::from(newton, before);
         }
         let mut border = vec![0.0; chord.len()];

@@ -245,7 +245,9 @@ impl<'p> Sensitive<'p> {
         let mut told = self.told(fine.condition);
         for (index, (row, fine)) in rows.iter().zip(&fine.slopes).enumerate() {
             let coarse = coarse.as_ref().map(|coarse| &coarse.slopes[index]);
-            told.add(row, fine.value, apart(fine, coarse, rounding));
+            let by = apart(fine, coarse, rounding);
+            let by = rounded(by, fine.value, &told.values);
+            told.add(row, fine.value, by);
         }
         Ok((told, Both { fine, coarse }))
     }
@@ -442,6 +444,17 @@ pub(super) fn apart(fine: &Slope, coarse: Option<&Slope>, rounding: f64) -> Vec<
         }
     });
     by.collect()
+}
+
+/// With rounding of what a derivative is the sum of, which may be left of it alone: each part is about the value divided by the variable.
+fn rounded(mut by: Vec<Estimate>, value: f64, variables: &[f64]) -> Vec<Estimate> {
+    for (by, variable) in by.iter_mut().zip(variables) {
+        let part = (value / variable).abs();
+        if part.is_finite() {
+            by.error += ROUNDINGS * f64::EPSILON * part;
+        }
+    }
+    by
 }
 
 /// How far equations in units of states are from singular ones, as a part of their size.

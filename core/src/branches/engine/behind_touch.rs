@@ -18,7 +18,7 @@ use super::Engine;
 use super::inside::{CLOSE, Height, LOOKS, in_doubt, is_on_way, noise_of, step_between};
 use super::seen::Seen;
 use crate::branches::problem::{BranchProblem, Test};
-use crate::continuation::locate::{ArcLength, inside};
+use crate::continuation::locate::{ArcLength, inside_over};
 use crate::continuation::newton::{Newton, NewtonOptions};
 
 /// Where orbits are computed in any case, by (1).
@@ -146,7 +146,7 @@ impl Behind<'_> {
         let [(from, a), (to, b)] = self.beside(place).map(|at| &self.known[at]);
         let step = step_between([a, b]);
         let part = (place * place - from * from) / (to * to - from * from);
-        let Some(point) = inside(problem.equations(), newton, step, part, self.options) else {
+        let Some(point) = inside_over(problem.equations(), newton, step, part, self.options) else {
             return false;
         };
         if !is_on_way(newton, step, &point) {

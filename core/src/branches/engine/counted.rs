@@ -69,11 +69,12 @@ impl Engine {
                     continue;
                 };
                 for pair in [[&a, &middle], [&middle, &b]] {
+                    let own = problem.record().turns.len();
                     self.record_all(problem, newton, pair, after, is_modulus);
                     if self.ended.is_some() {
                         return;
                     }
-                    self.take_back(problem, pair, known, turns);
+                    self.take_back(problem, pair, known, own);
                 }
                 if problem.record().turns.len() == turns {
                     halves.extend([[a, middle.clone()], [middle, b]]);
@@ -125,25 +126,29 @@ fn hides(problem: &dyn BranchProblem, pair: [&Seen; 2], event: &Event) -> bool {
     beside(event).is_some_and(|fits| ends.iter().flatten().any(|outside| !fits.contains(outside)))
 }
 
-/// Whether events between two points lead from what is outside of the unit circle at one of them, by (1), to another number at the other one.
+/// Whether events between two points lead from what is outside of the unit circle at one of them, by (1), to another number at the other one, each of them
+/// once. Beside a fold their values do not tell whether they are between.
 fn explain(problem: &dyn BranchProblem, pair: [&Seen; 2], events: &[Event]) -> bool {
     let [Some(here), Some(there)] = pair.map(|seen| outside(problem, seen)) else {
         return false;
     };
     let [from, to] = step_between(pair).parameters();
-    let between = |event: &&Event| (event.point.value - from) * (event.point.value - to) <= 0.0;
-    let ways: Vec<_> = events.iter().filter(between).filter_map(beside).collect();
-    let mut reached = vec![here];
-    for _ in &ways {
-        for [a, b] in &ways {
-            for (one, other) in [(a, b), (b, a)] {
-                if reached.contains(one) && !reached.contains(other) {
-                    reached.push(*other);
-                }
-            }
-        }
+    if here == there || events.iter().any(|event| event.kind == EventKind::Fold) {
+        return false;
     }
-    here != there && reached.contains(&there)
+    let between = |event: &&Event| (event.point.value - from) * (event.point.value - to) <= 0.0;
+    let mut ways: Vec<&Event> = events.iter().filter(between).collect();
+    let off = |event: &Event| (event.point.value - from).abs();
+    ways.sort_by(|a, b| off(a).total_cmp(&off(b)));
+    let reached = ways.into_iter().try_fold(here, |outside, event| {
+        let [one, other] = beside(event)?;
+        match outside {
+            _ if outside == one => Some(other),
+            _ if outside == other => Some(one),
+            _ => None,
+        }
+    });
+    reached == Some(there)
 }
 
 /// The numbers of multipliers outside of the unit circle on both sides of an event, by (1), if its own tell.

@@ -533,8 +533,7 @@ fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
 
 /// How far a point is behind another one.
 pub(super) fn distance(newton: &Newton, a: &CurvePoint, b: &CurvePoint) -> f64 {
-    let step = Step { before: a, next: b };
-    ArcLength::over(newton, step).at(&b.u).abs()
+    ArcLength::from(newton, a).at(&b.u)
 }
 
 /// Where (1), or (2) if there may be kinks, comes down lowest in an interval, below zero, between known heights that are not too close.

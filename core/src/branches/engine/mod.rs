@@ -366,7 +366,7 @@ impl Engine {
         if self.beyond {
             if self.comes_nearer(problem, newton, step) {
                 self.beyond = false;
-                return Continue::Break(Halt::Resize);
+                return Continue::Break(Halt::Back);
             }
             let Some(read) = problem.end(newton, step, self.options.newton) else {
                 return Continue::Break(Halt::Stop);

@@ -1,7 +1,7 @@
 //! Extremes of the coordinates and of the gaps of an orbit, from one walk along its period.
 //!
 //! Signals are sampled: eight times in the shortest period of the load, the directions that move and those modes whose ringing makes up the rates but for a tenth, six
-//! times on an interval at least. Where the motion is in closed form each has as many samples as it asks for itself, of a [grid](super::grid) that all of them share. Where
+//! times on an interval at least, or twice in a layer of it. Where the motion is in closed form each has as many samples as it asks for itself, of a [grid](super::grid) that all of them share. Where
 //! what rings decays in a part of an interval, coordinates have as many in each of its [layers](super::layers) as what is left of the ringing asks for. Where
 //! forces are unknown at nodes all have the same: those of the pass where its nodes are dense enough, else those that gaps ask for. What rings faster is bounded,
 //! and followed where an extreme may depend on it: see [`search`](super::search).

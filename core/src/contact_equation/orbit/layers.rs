@@ -21,8 +21,9 @@ const DECAYS: f64 = 4.0;
 const MOST: i32 = 6;
 /// In parts of what the load holds a pair at, what rings by no more is left of Newton's method, as where nothing has been met.
 const ROUNDING: f64 = 1e-9;
-/// A layer has as many samples.
+/// A layer has as many parts at least, and at most.
 const FEWEST: usize = 2;
+const LARGEST: f64 = 1e6;
 
 /// Grids of a way, each twice as fine as the one before.
 #[derive(Debug)]
@@ -93,7 +94,7 @@ impl Layer {
         let layer = |layer: i32| {
             let begin = if layer == 0 { from } else { end(layer - 1) };
             let end = if layer == more { to } else { end(layer) };
-            let parts = (moves * (end - begin)).ceil() as usize;
+            let parts = (moves * (end - begin)).ceil().min(LARGEST) as usize;
             Self {
                 grids: Grids::new([begin, end], parts.max(FEWEST)),
                 left: content.left((begin - from) / base),
