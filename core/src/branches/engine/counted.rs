@@ -28,6 +28,8 @@ use crate::event::{EventKind, Turn};
 /// beside a touch, is one with it. Near a fold the value says nothing of that, since it goes as the square of the way; there it is halved as often.
 const HALVINGS: usize = 24;
 const SHORTEST: f64 = 1e-7;
+/// No more events than so many explain a turn.
+const MOST: usize = 6;
 /// Where a part is divided: in the middle, or beside it if there is no orbit found there.
 pub(super) const PLACES: [f64; 5] = [0.5, 0.3, 0.7, 0.1, 0.9];
 /// Logarithms of moduli that are as small are those of multipliers that cross together, as copies do.
@@ -126,29 +128,30 @@ fn hides(problem: &dyn BranchProblem, pair: [&Seen; 2], event: &Event) -> bool {
     beside(event).is_some_and(|fits| ends.iter().flatten().any(|outside| !fits.contains(outside)))
 }
 
-/// Whether events between two points lead from what is outside of the unit circle at one of them, by (1), to another number at the other one, each of them
-/// once. Beside a fold their values do not tell whether they are between.
+/// Whether some of the events between two points, each of them once, lead from what is outside of the unit circle at one of the points, by (1), to another number at
+/// the other one. Beside a fold values do not tell the order of events, so that any is tried.
 fn explain(problem: &dyn BranchProblem, pair: [&Seen; 2], events: &[Event]) -> bool {
     let [Some(here), Some(there)] = pair.map(|seen| outside(problem, seen)) else {
         return false;
     };
     let [from, to] = step_between(pair).parameters();
-    if here == there || events.iter().any(|event| event.kind == EventKind::Fold) {
-        return false;
-    }
     let between = |event: &&Event| (event.point.value - from) * (event.point.value - to) <= 0.0;
-    let mut ways: Vec<&Event> = events.iter().filter(between).collect();
-    let off = |event: &Event| (event.point.value - from).abs();
-    ways.sort_by(|a, b| off(a).total_cmp(&off(b)));
-    let reached = ways.into_iter().try_fold(here, |outside, event| {
-        let [one, other] = beside(event)?;
-        match outside {
-            _ if outside == one => Some(other),
-            _ if outside == other => Some(one),
-            _ => None,
-        }
-    });
-    reached == Some(there)
+    let ways: Vec<_> = events.iter().filter(between).filter_map(beside).collect();
+    here != there && ways.len() <= MOST && lead(&ways, 0, here, there)
+}
+
+/// Whether ways of which some are used lead from a number to another one.
+fn lead(ways: &[[usize; 2]], used: u32, here: usize, there: usize) -> bool {
+    here == there
+        || ways.iter().enumerate().any(|(index, [one, other])| {
+            let own = 1 << index;
+            let next = match here {
+                _ if here == *one => other,
+                _ if here == *other => one,
+                _ => return false,
+            };
+            used & own == 0 && lead(ways, used | own, *next, there)
+        })
 }
 
 /// The numbers of multipliers outside of the unit circle on both sides of an event, by (1), if its own tell.
