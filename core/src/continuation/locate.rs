@@ -220,7 +220,7 @@ pub(crate) fn inside(
 ) -> Option<CurvePoint> {
     let arc = ArcLength::from(newton, step.before);
     let length = arc.length(newton, step.before, step.next);
-    inside_by(problem, newton, step, (&arc, length), part, options)
+    inside_by(problem, newton, step, &arc, length, part, options)
 }
 
 /// The same, as the arc length [over](ArcLength::over) the step tells.
@@ -233,14 +233,15 @@ pub(crate) fn inside_over(
 ) -> Option<CurvePoint> {
     let arc = ArcLength::over(newton, step);
     let length = arc.at(&step.next.u);
-    inside_by(problem, newton, step, (&arc, length), part, options)
+    inside_by(problem, newton, step, &arc, length, part, options)
 }
 
 fn inside_by(
     problem: &mut dyn Problem,
     newton: &mut Newton,
     Step { before: a, next: b }: Step<'_>,
-    (arc, length): (&ArcLength, f64),
+    arc: &ArcLength,
+    length: f64,
     part: f64,
     options: NewtonOptions,
 ) -> Option<CurvePoint> {
