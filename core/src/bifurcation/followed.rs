@@ -15,8 +15,8 @@ use crate::event::Side;
 use crate::response::{FrequencyResponse, OrbitMethod, OrbitMethodKind};
 use crate::shooting::Shooting;
 
-/// Orbits of several periods with more harmonics than this are followed by shooting. In models of two and three coordinates shooting took 3 to 8 ms for an
-/// orbit of three or four periods, the balance 20 to 40 ms with 60 to 80 harmonics and as long as shooting with 20 to 30.
+/// Orbits of several periods with more harmonics than this are followed by shooting. Of three coordinates with affine stops an orbit took 3 to 8 ms by shooting
+/// and 37 ms by the balance with 80 harmonics; of two coordinates with forces that are integrated, 15 to 40 ms and, with 60 to 80 harmonics, 18 to 33 ms.
 const MANY: usize = 25;
 /// Values of one orbit differ by this part of the range.
 const ROUNDING: f64 = 1e-6;
