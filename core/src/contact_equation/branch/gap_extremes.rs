@@ -156,7 +156,7 @@ impl Run<'_> {
             (same && apart < SAME).then_some((apart, sign))
         };
         let watching = (0..skeleton.switches.len()).filter_map(|index| {
-            let Told::First { other, bend } = skeleton.switches[index].told else {
+            let Told::First { other, bend, .. } = skeleton.switches[index].told else {
                 return None;
             };
             let square = skeleton.slot(other);

@@ -118,8 +118,18 @@ struct Next {
     equations: Equations,
     u: Vec<f64>,
     resolution: usize,
-    /// Only panels end elsewhere.
-    same: bool,
+    same: Same,
+}
+
+/// What equations have in common with those before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Same {
+    /// The orbit.
+    Orbit,
+    /// All but where panels end.
+    Switches,
+    /// All but the shapes of gaps by which pairs of switches are told.
+    Panels,
 }
 
 /// Beside a touch a tangent in other unknowns is a difference across it, and may lead back. The last step tells which way the walk goes.
@@ -211,7 +221,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             equations,
             u,
             resolution,
-            same: false,
+            same: Same::Orbit,
         });
         self.next.is_some()
     }
@@ -223,7 +233,25 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             u: self.run.equations.rearranged(&equations, u),
             equations,
             resolution: self.run.resolution,
-            same: true,
+            same: Same::Switches,
+        });
+        self.next.is_some()
+    }
+
+    /// Prepares the same equations with pairs that are told by the shapes of gaps on an orbit. Says whether these are others.
+    fn prepare_reshaped(&mut self, at: &CurvePoint) -> bool {
+        let skeleton = self.run.reshaped(&at.u);
+        let value = self.run.equations.made;
+        let found = skeleton.and_then(|skeleton| self.run.equations.on(skeleton, value));
+        self.next = found.map(|equations| {
+            let (from, to) = (&self.run.equations.skeleton, &equations.skeleton);
+            let [u, _] = from.told_by(to, &at.u, &at.tangent);
+            Next {
+                u,
+                equations,
+                resolution: self.run.resolution,
+                same: Same::Panels,
+            }
         });
         self.next.is_some()
     }
@@ -300,6 +328,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         if fits == Fits::Moved && !stuck && self.prepare_at_kinks(&at.u) {
             return Read::ResizeBehind;
         }
+        if !other && !stuck && self.prepare_reshaped(at) {
+            return Read::ResizeBehind;
+        }
         Read::Kept
     }
 
@@ -311,14 +342,22 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let Next {
             equations, u, same, ..
         } = next;
-        let found = if *same {
-            CurvePoint {
+        let found = match same {
+            Same::Orbit => self.run.point_in(of, equations, u)?,
+            Same::Switches => CurvePoint {
                 u: self.run.equations.rearranged(equations, &of.u),
                 tangent: self.run.equations.rearranged(equations, &of.tangent),
                 scale: of.scale,
+            },
+            Same::Panels => {
+                let (from, to) = (&self.run.equations.skeleton, &equations.skeleton);
+                let [u, tangent] = from.told_by(to, &of.u, &of.tangent);
+                CurvePoint {
+                    u,
+                    tangent,
+                    scale: of.scale,
+                }
             }
-        } else {
-            self.run.point_in(of, equations, u)?
         };
         let mut numbers = found.u.iter().chain(&found.tangent);
         numbers.all(|x| x.is_finite()).then_some(found)

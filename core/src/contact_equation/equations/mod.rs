@@ -331,7 +331,7 @@ impl Equations {
                     self.residual[row] = self.room.at_switch[index][0];
                     self.write_row(row, &[(index, Of::Gap, 1.0)], None);
                 }
-                Told::First { other, bend } => {
+                Told::First { other, bend, .. } => {
                     self.touching(u, [index, other], bend);
                 }
                 Told::Second { .. } => {}

@@ -17,7 +17,7 @@
 //! 2 |g''/g'''| = d |g'(tau + d) - g'(tau - d)| / |g'(tau + d) - 2 g'(tau) + g'(tau - d)|                       (2)
 //! ```
 //!
-//! if the third derivative stays as it is. Where there is no extreme at that place, one is about to be born there with another, and this one moves as fast as if it
+//! if the third derivative stays as it is, which is `1 / (3 |l|)` with the lean of (4) of [`skeleton`](crate::contact_equation::skeleton). Where there is no extreme at that place, one is about to be born there with another, and this one moves as fast as if it
 //! were about to end there.
 //!
 //! Source: Abramowitz and Stegun (1964), Handbook of Mathematical Functions, section 25.3 (numerical differentiation).
@@ -38,6 +38,15 @@ pub(in crate::contact_equation) const BEND: f64 = 1e-3;
 
 /// Positions and velocities at a phase.
 pub(in crate::contact_equation) type At<'a> = &'a dyn Fn(f64, &mut [f64]);
+
+/// How a gap goes through an extreme, by the phase.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::contact_equation) struct Shape {
+    /// Half of its second derivative.
+    pub(in crate::contact_equation) bend: f64,
+    /// How the middle of two crossings of a level beside it moves with `H`.
+    pub(in crate::contact_equation) lean: f64,
+}
 
 /// Gaps of a motion that is given by samples.
 pub(in crate::contact_equation) struct Gaps<'a> {
@@ -75,15 +84,23 @@ impl Gaps<'_> {
 
     /// (1), by the phase.
     pub(in crate::contact_equation) fn bend(&self, contact: usize, phase: f64) -> f64 {
-        let rate = |phase: f64| self.gap(contact, phase)[1];
-        (rate(phase + BEND) - rate(phase - BEND)) / (4.0 * BEND * self.values.base)
+        self.shape(contact, phase, BEND).bend
     }
 
     /// (2): how far an extreme is from the one that its gap would have next.
     pub(in crate::contact_equation) fn lone(&self, contact: usize, phase: f64) -> f64 {
-        let at = [phase - BEND, phase, phase + BEND];
+        1.0 / (3.0 * self.shape(contact, phase, BEND).lean.abs())
+    }
+
+    /// (1), and (4) of [`skeleton`](crate::contact_equation::skeleton) from the same rates, by the phase, over so much of it.
+    pub(in crate::contact_equation) fn shape(&self, contact: usize, phase: f64, d: f64) -> Shape {
+        let at = [phase - d, phase, phase + d];
         let [before, here, after] = at.map(|phase| self.gap(contact, phase)[1]);
-        BEND * (after - before).abs() / (after - 2.0 * here + before).abs()
+        let lean = -(after - 2.0 * here + before) / (3.0 * d * (after - before));
+        Shape {
+            bend: (after - before) / (4.0 * d * self.values.base),
+            lean: if lean.is_finite() { lean } else { 0.0 },
+        }
     }
 }
 

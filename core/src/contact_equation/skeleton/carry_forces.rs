@@ -47,15 +47,15 @@ impl Skeleton {
         carried
     }
 
-    /// How far a mark has moved between two orbits, of a short pair its middle: that moves by little where `H` passes zero.
+    /// How far a mark has moved between two orbits, of a short pair its `c`: that moves by little where `H` passes zero.
     fn moved(&self, mark: Mark, u: &[f64], known: &[f64]) -> f64 {
         let cut = |cut: Cut| match cut {
             Cut::Switch(index) if self.opens(cut, u, known) => {
-                let middle = match self.switches[index].told {
+                let place = match self.switches[index].told {
                     Told::Second { other } => self.slot(other),
                     Told::First { .. } | Told::Alone => self.slot(index),
                 };
-                u[middle] - known[middle]
+                u[place] - known[place]
             }
             _ => self.cut(u, cut).phase - self.cut(known, cut).phase,
         };

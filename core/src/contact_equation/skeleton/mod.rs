@@ -10,16 +10,20 @@
 //! u = [ states at the beginning | places of switches | forces at nodes, interval by interval | parameter ]     (1)
 //! ```
 //!
-//! A switch has its phase as unknown. Two that may meet, since the stretch between them is short, have their middle `c` and `H`, the square
-//! of half of the way between them:
+//! A switch has its phase as unknown. Two that may meet, since the stretch between them is short, have `c` and `H`, the square of half of the
+//! way between them:
 //!
 //! ```text
-//! tau = c -+ sqrt(H),    (g_1 + g_2)/2 = level,    (g_2 - g_1)/(2 sqrt H) = 0,    H > 0                       (2)
-//! g(c) - level + (g''/2) H = 0,    g'(c) = 0,                                     H <= 0                      (3)
+//! tau = c + l H -+ sqrt(H),    (g_1 + g_2)/2 = level,    (g_2 - g_1)/(2 sqrt H) = 0,    H > 0                 (2)
+//! g(c) - level + (g''/2) H = 0,    g'(c) = 0,                                           H <= 0                (3)
+//! l = -g''' / (6 g'')                                                                                         (4)
 //! ```
 //!
-//! So `H` passes zero smoothly where the gap touches its level: beyond, (3) goes on with the extreme of a gap that does not reach it. Where
-//! the force jumps at the level, the orbit goes as the root of `H > 0`, which is the unknown there then.
+//! So `H` passes zero smoothly where the gap touches its level: beyond, (3) goes on with the extreme of a gap that does not reach it. The middle
+//! of two crossings of a cubic moves away from its extreme with the slope (4) by `H`. A constant `l` near it takes that out of `c`, which had
+//! a corner at `H = 0` otherwise, on both sides of which Newton's method may go to and fro. Where
+//! the force jumps at the level, the orbit goes as the root of `H > 0`, which is the unknown there then; the gap has another shape at once there, and `l`
+//! is zero.
 //!
 //! Of an orbit that comes back after a part of its period with an image `S` of its coordinates that part is cut, and its end is `S` of its
 //! beginning.

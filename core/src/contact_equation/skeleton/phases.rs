@@ -31,6 +31,17 @@ impl Opening {
         }
     }
 
+    /// How far the middle of the way moves for every unit of the lean, and its derivative by the unknown; zero where there is no way.
+    pub(in crate::contact_equation) fn leaning(self, unknown: f64) -> [f64; 2] {
+        if unknown <= 0.0 {
+            return [0.0; 2];
+        }
+        match self {
+            Self::Square => [unknown, 1.0],
+            Self::Root => [unknown * unknown, 2.0 * unknown],
+        }
+    }
+
     /// `H`
     pub(in crate::contact_equation) fn square(self, unknown: f64) -> f64 {
         match self {
@@ -90,20 +101,24 @@ impl Skeleton {
             Cut::End => Place::fixed(self.begin + self.length),
             Cut::Switch(index) => {
                 let own = self.slot(index);
-                let (middle, square, sign) = match self.switches[index].told {
+                let (first, square, sign) = match self.switches[index].told {
                     Told::Alone => {
                         let mut place = Place::fixed(self.begin + u[own]);
                         place.add(own, 1.0);
                         return place;
                     }
-                    Told::First { other, .. } => (own, self.slot(other), -1.0),
-                    Told::Second { other } => (self.slot(other), own, 1.0),
+                    Told::First { other, .. } => (index, self.slot(other), -1.0),
+                    Told::Second { other } => (other, own, 1.0),
                 };
-                let [half, slope] = self.openings[index].half(u[square]);
-                let mut place = Place::fixed(self.begin + u[middle] + sign * half);
+                let (middle, opening) = (self.slot(first), self.openings[index]);
+                let [half, slope] = opening.half(u[square]);
+                let [moved, by_square] = opening
+                    .leaning(u[square])
+                    .map(|by| self.switches[first].told.lean() * by);
+                let mut place = Place::fixed(self.begin + u[middle] + moved + sign * half);
                 place.add(middle, 1.0);
                 if half > 0.0 {
-                    place.add(square, sign * slope);
+                    place.add(square, by_square + sign * slope);
                 }
                 place
             }

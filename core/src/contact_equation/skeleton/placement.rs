@@ -14,14 +14,27 @@ use crate::contact_equation::linear_part::values::Contact;
 pub(in crate::contact_equation) enum Told {
     /// By its phase.
     Alone,
-    /// It is the first of two: its unknown is the middle, and half of `g''` of (3) of [`skeleton`](crate::contact_equation::skeleton) belongs to it, by the phase.
+    /// It is the first of two: its unknown is `c` of (2) of [`skeleton`](crate::contact_equation::skeleton), and half of `g''` and the lean `l` there belong to
+    /// it, by the phase.
     First {
         other: usize,
         #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         bend: f64,
+        #[cfg_attr(feature = "serde", serde(default, with = "crate::serialise"))]
+        lean: f64,
     },
     /// It is the second of two: its unknown is `H`.
     Second { other: usize },
+}
+
+impl Told {
+    /// `l` of (2) of [`skeleton`](crate::contact_equation::skeleton); zero where it is not the first of two.
+    pub(in crate::contact_equation) fn lean(self) -> f64 {
+        match self {
+            Self::First { lean, .. } => lean,
+            _ => 0.0,
+        }
+    }
 }
 
 /// A gap at a level.
@@ -155,9 +168,14 @@ impl Placement {
         };
         match own.told {
             Told::Alone => true,
-            Told::First { other: place, bend } => {
+            Told::First {
+                other: place,
+                bend,
+                lean,
+            } => {
                 let second = other(place).map(|second| second.told);
-                place > index && bend.is_finite() && second == Some(Told::Second { other: index })
+                let known = bend.is_finite() && lean.is_finite();
+                place > index && known && second == Some(Told::Second { other: index })
             }
             Told::Second { other: place } => {
                 let first = other(place).map(|first| first.told);

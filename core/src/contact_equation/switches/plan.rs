@@ -8,7 +8,7 @@ use crate::contact_equation::equations::Equations;
 use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::equations::setting::{Frame, Setting};
 use crate::contact_equation::linear_part::values::Contact;
-use crate::contact_equation::orbit::gaps::{BEND, Gaps, beginning, piece, room, seen};
+use crate::contact_equation::orbit::gaps::{BEND, Gaps, Shape, beginning, piece, room, seen};
 use crate::contact_equation::orbit::kinks::kinks;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::placement::{
@@ -82,7 +82,7 @@ pub(super) fn is_far(square: f64, room: Room, jumps: bool) -> bool {
 #[derive(Debug, Clone, Copy)]
 struct Planned {
     placed: Placed,
-    /// Middle or `H` where it is one of two.
+    /// `c` or `H` where it is one of two.
     value: f64,
 }
 
@@ -270,16 +270,23 @@ fn pair_up(gaps: &Gaps<'_>, begin: f64, planned: &mut [Planned]) {
         let middle = planned[first].placed.phase + 0.5 * way;
         let contact = planned[first].placed.switch.contact;
         let half = 0.5 * way;
-        let beside = half.max(BEND);
-        let rates = [middle - beside, middle + beside].map(|phase| gaps.gap(contact, phase)[1]);
-        let bend = (rates[1] - rates[0]) / (4.0 * beside * gaps.values.base);
-        planned[first].placed.switch.told = Told::First {
-            other: second,
-            bend,
-        };
-        planned[first].value = middle - begin;
+        let level = planned[first].placed.switch.level;
+        let (shape, square) = (gaps.shape(contact, middle, half.max(BEND)), half * half);
+        let told = first_of_two(gaps, [contact, level], shape, second);
+        planned[first].placed.switch.told = told;
+        planned[first].value = middle - told.lean() * square - begin;
         planned[second].placed.switch.told = Told::Second { other: first };
-        planned[second].value = half * half;
+        planned[second].value = square;
+    }
+}
+
+/// The first switch of two, of a contact at a level, around an extreme of this shape. Where the force jumps there the gap has another one beyond it at once.
+fn first_of_two(gaps: &Gaps<'_>, [contact, level]: [usize; 2], shape: Shape, other: usize) -> Told {
+    let jumps = gaps.values.contacts[contact].jumps[level];
+    Told::First {
+        other,
+        bend: shape.bend,
+        lean: if jumps { 0.0 } else { shape.lean },
     }
 }
 
@@ -361,8 +368,8 @@ fn short_pair(
     if (short < 0.0) != extreme.maximum {
         return None;
     }
-    let bend = gaps.bend(extreme.contact, extreme.phase);
-    let square = -short / bend;
+    let shape = gaps.shape(extreme.contact, extreme.phase, BEND);
+    let square = -short / shape.bend;
     if !is_near(
         square,
         room,
@@ -380,7 +387,8 @@ fn short_pair(
         phase: extreme.phase,
     };
     // The place of the other one is written by `join`.
-    let first = switch(extreme.maximum, Told::First { other: 0, bend });
+    let told = first_of_two(gaps, [extreme.contact, level], shape, 0);
+    let first = switch(extreme.maximum, told);
     let second = switch(!extreme.maximum, Told::Second { other: 0 });
     Some([(first, square), (second, square)])
 }

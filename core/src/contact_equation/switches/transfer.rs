@@ -43,7 +43,7 @@ pub(in crate::contact_equation) fn transferred(
                 let from = new.begin + near[slot];
                 to[slot] = near[slot] + nearest(&known, switch, from, new.length)?;
             }
-            Told::First { other, bend } => {
+            Told::First { other, bend, .. } => {
                 let from = new.begin + near[slot];
                 let pair = [switch, &new.switches[other]];
                 let extreme = extreme_of(&extremes, gaps, switch, [from, bend, new.length]);
@@ -51,7 +51,10 @@ pub(in crate::contact_equation) fn transferred(
                 let [by, square] = match (extreme, ends) {
                     // Crossings are those of a neighbour then.
                     (Some(short @ [_, square]), _) if square <= 0.0 => short,
-                    (_, [Some(a), Some(b)]) if a < b => [0.5 * (a + b), 0.25 * (b - a) * (b - a)],
+                    (_, [Some(a), Some(b)]) if a < b => {
+                        let square = 0.25 * (b - a) * (b - a);
+                        [0.5 * (a + b) - switch.told.lean() * square, square]
+                    }
                     _ => return None,
                 };
                 to[slot] = near[slot] + by;
