@@ -8,14 +8,14 @@
 //! ```
 //!
 //! The second difference of three successive points is trusted to a factor. Where a level is touched between two points the function may have a
-//! kink, to which no second difference is a bound. If it is convex all the same it stays above the chords of the parts beside, with slopes
-//! `m` before and `n` behind,
+//! kink, to which no second difference is a bound. If it is convex all the same it stays above the chords of the parts beside. It need not be, and
+//! falls the faster the nearer to the kink then: with slopes `m < 0` before and `n > 0` behind, both times `t = 2`, it is looked at if
 //!
 //! ```text
-//! p + m s,     q - n (l - s),                                                                                  (2)
+//! p + t m s,     q - t n (l - s),                                                                              (2)
 //! ```
 //!
-//! which meet where `s = (q - p - n l) / (m - n)`. Where (1) or (2) comes down to zero, the orbit there is computed, and both parts are looked at
+//! which meet where `s = (q - p - t n l) / (t (m - n))`, come down to zero. Where (1) or (2) comes down to zero, the orbit there is computed, and both parts are looked at
 //! with the differences that are known then, until one has the other sign or all stay above. It may be in the step before the last one, since a
 //! point beside the second zero says nothing until the next one is known.
 //!
@@ -23,7 +23,7 @@
 //! two, a fold and a crossing: orbits on both sides of the turn tell.
 //!
 //! Source: (1) is the error bound of linear interpolation, as Piyavskii (1972), An algorithm for finding the absolute extremum of a
-//! function, uses it with a bound on the first derivative. (2) are the two lines below a convex function of Rote (1992), The convergence rate of
+//! function, uses it with a bound on the first derivative. (2), with `t = 1`, are the two lines below a convex function of Rote (1992), The convergence rate of
 //! the sandwich algorithm for approximating convex functions.
 
 use super::Engine;
@@ -37,6 +37,8 @@ use crate::event::EventKind;
 
 /// A second difference may be so many times as large between the points that it was taken of.
 const TRUSTED: f64 = 3.0;
+/// `t` of (2)
+const STEEPER: f64 = 2.0;
 /// So many orbits, and until they come this near to each other, as a part of the step.
 pub(super) const LOOKS: usize = 6;
 pub(super) const CLOSE: f64 = 1e-3;
@@ -588,6 +590,8 @@ fn below_chords(known: &[Height], i: usize) -> Option<Height> {
     let behind = known.get(i + 1..i + 3).map(chord);
     let (s, height) = match (before, behind) {
         (Some(m), Some(n)) => {
+            let falls = m < 0.0 && n > 0.0;
+            let [m, n] = [m, n].map(|slope| if falls { STEEPER * slope } else { slope });
             let s = (b.height - a.height - n * l) / (m - n);
             (s, a.height + m * s)
         }
@@ -624,14 +628,22 @@ mod tests {
 
     /// Where a function is found below zero between the last two of three points, or else the number of orbits that were looked at.
     fn below(f: impl Fn(f64) -> f64, places: [f64; 3]) -> Result<f64, usize> {
+        below_between(f, places, [places[1], places[2]])
+    }
+
+    /// The same between any two of them.
+    fn below_between(
+        f: impl Fn(f64) -> f64,
+        places: [f64; 3],
+        step: [f64; 2],
+    ) -> Result<f64, usize> {
         let at = |place: f64| Height {
             place,
             height: f(place),
         };
         let mut known: Vec<Height> = places.map(at).into();
         for looks in 0..LOOKS {
-            let step = [places[1], places[2]];
-            let Some(place) = in_doubt(&known, step, CLOSE * (places[2] - places[1]), true) else {
+            let Some(place) = in_doubt(&known, step, CLOSE * (step[1] - step[0]), true) else {
                 return Err(looks);
             };
             if f(place) < 0.0 {
@@ -653,6 +665,21 @@ mod tests {
         let found = below(kink, points).unwrap();
         assert!((0.7..0.9).contains(&found), "{found}");
         assert!(below(|s| kink(s) + 0.4, points).is_err());
+    }
+
+    /// A pair of multipliers of four masses, whose modulus falls the faster the nearer it comes to a kink, where it is below one for a tenth of the step.
+    #[test]
+    fn a_kink_that_is_come_to_steeply_hides_no_pair_of_zeros() {
+        let kink = |s: f64| {
+            if s < 0.77 {
+                0.365 - 0.5 * (0.77_f64.sqrt() - (0.77 - s).sqrt())
+            } else {
+                -0.074 + 1.2 * (s - 0.77)
+            }
+        };
+        let points = [0.0, 1.0, 1.3];
+        let found = below_between(kink, points, [0.0, 1.0]).unwrap();
+        assert!((0.7..0.84).contains(&found), "{found}");
     }
 
     /// What halves from point to point leads to zero at the next one, and no further.
