@@ -19,7 +19,7 @@ use super::inside::step_between;
 use super::seen::{Seen, changes, is_modulus};
 use crate::branches::moduli;
 use crate::branches::point::Event;
-use crate::branches::problem::BranchProblem;
+use crate::branches::problem::{BranchProblem, Test};
 use crate::continuation::locate::inside;
 use crate::continuation::newton::Newton;
 use crate::event::{EventKind, Turn};
@@ -55,12 +55,12 @@ impl Engine {
             for [a, b] in parts {
                 let located = changes(problem, &a, &b);
                 let events = problem.record().events.get(known..).unwrap_or_default();
-                let [from, to] = step_between([&a, &b]).parameters();
-                let is_long = (to - from).abs() > SHORTEST * to.abs();
+                let [from, to] = span(problem, [&a, &b], events);
+                let is_long = to - from > SHORTEST * to.abs();
                 let hides = located.iter().any(|change| !is_modulus(change))
                     && events.iter().any(|event| {
                         // A fold may be beyond both ends, and far from both along the branch however near they are in value.
-                        let between = (event.point.value - from) * (event.point.value - to) <= 0.0;
+                        let between = (from..=to).contains(&event.point.value);
                         (event.kind == EventKind::Fold || (is_long && between))
                             && hides(problem, [&a, &b], event)
                     });
@@ -128,14 +128,28 @@ fn hides(problem: &dyn BranchProblem, pair: [&Seen; 2], event: &Event) -> bool {
     beside(event).is_some_and(|fits| ends.iter().flatten().any(|outside| !fits.contains(outside)))
 }
 
+/// The values between two points: where the branch turns between both, those up to the folds among these events as well.
+fn span(problem: &dyn BranchProblem, pair: [&Seen; 2], events: &[Event]) -> [f64; 2] {
+    let found = changes(problem, pair[0], pair[1]);
+    let turns = found.iter().any(|change| change.test == Test::Slope);
+    let folds = events
+        .iter()
+        .filter(|event| turns && event.kind == EventKind::Fold);
+    let folds = folds.map(|event| event.point.value);
+    let values = step_between(pair).parameters().into_iter().chain(folds);
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| {
+        [least.min(x), most.max(x)]
+    })
+}
+
 /// Whether some of the events between two points, each of them once, lead from what is outside of the unit circle at one of the points, by (1), to another number at
 /// the other one. Beside a fold values do not tell the order of events, so that any is tried.
 fn explain(problem: &dyn BranchProblem, pair: [&Seen; 2], events: &[Event]) -> bool {
     let [Some(here), Some(there)] = pair.map(|seen| outside(problem, seen)) else {
         return false;
     };
-    let [from, to] = step_between(pair).parameters();
-    let between = |event: &&Event| (event.point.value - from) * (event.point.value - to) <= 0.0;
+    let [from, to] = span(problem, pair, events);
+    let between = |event: &&Event| (from..=to).contains(&event.point.value);
     let ways: Vec<_> = events.iter().filter(between).filter_map(beside).collect();
     here != there && ways.len() <= MOST && lead(&ways, 0, here, there)
 }
