@@ -8,7 +8,8 @@
 //! n in { k, k + 1 },    of a pair    n in { k, k + 2 }                                                        (1)
 //! ```
 //!
-//! are outside at that end. Where (1) does not hold the step is halved, and each half is looked at. What is not located there is none if the events
+//! are outside at that end, and events one after the other lead from the number at one end to that at the other one. Where (1) does not hold, or events that were
+//! located do not lead there, the step is halved, and each half is looked at. What is not located there is none if the events
 //! that were located between both ends of the half lead by (1) from one number to the other.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 4 (a bifurcation is where the number of
@@ -19,7 +20,7 @@ use super::inside::step_between;
 use super::seen::{Seen, changes, is_modulus};
 use crate::branches::moduli;
 use crate::branches::point::Event;
-use crate::branches::problem::{BranchProblem, Test};
+use crate::branches::problem::{BranchProblem, Change, Test};
 use crate::continuation::locate::inside;
 use crate::continuation::newton::Newton;
 use crate::event::{EventKind, Turn};
@@ -57,13 +58,14 @@ impl Engine {
                 let events = problem.record().events.get(known..).unwrap_or_default();
                 let [from, to] = span(problem, [&a, &b], events);
                 let is_long = to - from > SHORTEST * to.abs();
+                let alone = events.iter().any(|event| {
+                    // A fold may be beyond both ends, and far from both along the branch however near they are in value.
+                    let between = (from..=to).contains(&event.point.value);
+                    (event.kind == EventKind::Fold || (is_long && between))
+                        && hides(problem, [&a, &b], event)
+                });
                 let hides = located.iter().any(|change| !is_modulus(change))
-                    && events.iter().any(|event| {
-                        // A fold may be beyond both ends, and far from both along the branch however near they are in value.
-                        let between = (from..=to).contains(&event.point.value);
-                        (event.kind == EventKind::Fold || (is_long && between))
-                            && hides(problem, [&a, &b], event)
-                    });
+                    && (alone || is_long && !follow(problem, [&a, &b], events, &located));
                 let middle = hides
                     .then(|| self.middle(problem, newton, [&a, &b]))
                     .flatten();
@@ -151,12 +153,53 @@ fn explain(problem: &dyn BranchProblem, pair: [&Seen; 2], events: &[Event]) -> b
     let [from, to] = span(problem, pair, events);
     let between = |event: &&Event| (from..=to).contains(&event.point.value);
     let ways: Vec<_> = events.iter().filter(between).filter_map(beside).collect();
-    here != there && ways.len() <= MOST && lead(&ways, 0, here, there)
+    here != there && ways.len() <= MOST && lead(&ways, 0, here, &|_, number| number == there)
 }
 
-/// Whether ways of which some are used lead from a number to another one.
-fn lead(ways: &[[usize; 2]], used: u32, here: usize, there: usize) -> bool {
-    here == there
+/// Whether some of the events between two points, among them one of each kind that was located there, lead by (1) from what is outside at one of the
+/// points to what is outside at the other one; also where what is outside is not known.
+fn follow(
+    problem: &dyn BranchProblem,
+    pair: [&Seen; 2],
+    events: &[Event],
+    located: &[Change],
+) -> bool {
+    let [Some(here), Some(there)] = pair.map(|seen| outside(problem, seen)) else {
+        return true;
+    };
+    let [from, to] = span(problem, pair, events);
+    let between = |event: &&Event| (from..=to).contains(&event.point.value);
+    let known = events.iter().filter(between);
+    let known: Option<Vec<_>> = known
+        .map(|event| Some((event.kind, beside(event)?)))
+        .collect();
+    let Some(known) = known.filter(|known| known.len() <= MOST) else {
+        return true;
+    };
+    let ways: Vec<_> = known.iter().map(|(_, way)| *way).collect();
+    let is_met = |used: u32| {
+        located
+            .iter()
+            .filter(|change| !is_modulus(change))
+            .all(|change| {
+                let mut of_kind = (0..known.len()).filter(|index| known[*index].0 == change.kind);
+                let used = |index: usize| used & (1 << index) != 0;
+                of_kind.clone().next().is_none() || of_kind.any(used)
+            })
+    };
+    lead(&ways, 0, here, &|used, number| {
+        number == there && is_met(used)
+    })
+}
+
+/// Whether ways of which some are used lead from a number to one that is asked for, with the ways that are used then.
+fn lead(
+    ways: &[[usize; 2]],
+    used: u32,
+    here: usize,
+    is_there: &dyn Fn(u32, usize) -> bool,
+) -> bool {
+    is_there(used, here)
         || ways.iter().enumerate().any(|(index, [one, other])| {
             let own = 1 << index;
             let next = match here {
@@ -164,7 +207,7 @@ fn lead(ways: &[[usize; 2]], used: u32, here: usize, there: usize) -> bool {
                 _ if here == *other => one,
                 _ => return false,
             };
-            used & own == 0 && lead(ways, used | own, *next, there)
+            used & own == 0 && lead(ways, used | own, *next, is_there)
         })
 }
 

@@ -9,7 +9,8 @@
 //!
 //! The second difference of three successive points is trusted to a factor. Where a level is touched between two points the function may have a
 //! kink, to which no second difference is a bound. If it is convex all the same it stays above the chords of the parts beside. It need not be, and
-//! falls the faster the nearer to the kink then: with slopes `m < 0` before and `n > 0` behind, both times `t = 2`, it is looked at if
+//! falls the faster the nearer to the kink then: with slopes `m < 0` before and `n > 0` behind, or that of the part where that is steeper, both times `t = 2`,
+//! it is looked at if
 //!
 //! ```text
 //! p + t m s,     q - t n (l - s),                                                                              (2)
@@ -590,8 +591,14 @@ fn below_chords(known: &[Height], i: usize) -> Option<Height> {
     let behind = known.get(i + 1..i + 3).map(chord);
     let (s, height) = match (before, behind) {
         (Some(m), Some(n)) => {
-            let falls = m < 0.0 && n > 0.0;
-            let [m, n] = [m, n].map(|slope| if falls { STEEPER * slope } else { slope });
+            let own = (b.height - a.height) / l;
+            let steep = [m.min(own), n.max(own)];
+            let falls = steep[0] < 0.0 && steep[1] > 0.0;
+            let [m, n] = if falls {
+                steep.map(|slope| STEEPER * slope)
+            } else {
+                [m, n]
+            };
             let s = (b.height - a.height - n * l) / (m - n);
             (s, a.height + m * s)
         }
