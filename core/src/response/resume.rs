@@ -256,12 +256,20 @@ impl Resume<'_> {
             }
             Following::ContactEquation {
                 equation,
-                rest: Some(rest),
+                rest: Left::OneWay(rest),
                 otherwise,
                 ..
             } => {
                 let (equation, other) = (*equation, *otherwise);
                 by_contact_equation::resume(request, equation, other, branch, rest, &mut *visit)?
+            }
+            Following::ContactEquation {
+                equation,
+                rest: Left::BothWays(both),
+                ..
+            } if is_left(branch) => {
+                self.unkept()?;
+                by_contact_equation::both_ways(request, *equation, Some(branch), both, &mut *visit)?
             }
             _ => return self.beyond(following, request, visit),
         };

@@ -16,6 +16,7 @@
 
 use nalgebra::DMatrix;
 
+use super::event_tangent;
 use super::method::VANISHED;
 use crate::branches::moduli::multipliers;
 use crate::branches::point::{Event, Point};
@@ -76,6 +77,7 @@ pub(in crate::contact_equation) fn event(
 ) -> Option<Event> {
     let at = &zero.root.located.point;
     let test = Test::of(zero.change.test);
+    let periods = run.problem.asked.period;
     let read = run.read_event(at)?;
     let mut event = Event {
         kind,
@@ -84,7 +86,7 @@ pub(in crate::contact_equation) fn event(
         test: zero.root.located.test,
         after: zero.after,
         contacts: 0,
-        tangent: at.tangent.clone(),
+        tangent: Vec::new(),
     };
     let crosses = zero.change.kind == EventKind::BranchPoint;
     let again = if crosses {
@@ -99,6 +101,7 @@ pub(in crate::contact_equation) fn event(
         } else {
             f64::INFINITY
         };
+        event.tangent = event_tangent::of_states(&mut run.equations, at, periods);
         return Some(event);
     };
     let map = again.equations.map(&again.point.u);
@@ -108,7 +111,7 @@ pub(in crate::contact_equation) fn event(
         ..point
     };
     (event.error, event.test) = (again.error, again.test);
-    event.tangent = again.point.tangent;
+    event.tangent = event_tangent::of_states(&mut again.equations, &again.point, periods);
     Some(event)
 }
 
@@ -428,7 +431,7 @@ fn keep_touch(run: &mut Run<'_>, touch: &Touch, at: &CurvePoint) {
         test: touch.located.test,
         after: touch.after,
         contacts: touch.contacts,
-        tangent: at.tangent.clone(),
+        tangent: event_tangent::of_states(&mut run.equations, at, run.problem.asked.period),
     });
 }
 
