@@ -21,7 +21,7 @@ pub(super) fn of_states(equations: &mut Equations, at: &CurvePoint, periods: usi
         let pairs = at.u.iter().zip(&at.tangent);
         let u: Vec<f64> = pairs.map(|(x, t)| x + step * t).collect();
         equations.compute(&u, false);
-        (!equations.failed).then(|| Motion::of(equations).states(periods))
+        (!equations.failed).then(|| Motion::of(equations).states_of_parts(periods))
     };
     let ends = beside(step).zip(beside(-step));
     let Some((ahead, behind)) = ends else {

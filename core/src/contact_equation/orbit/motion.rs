@@ -75,7 +75,7 @@ impl<'e> Motion<'e> {
     }
 
     /// The states at the beginnings of so many parts of equal length.
-    pub(in crate::contact_equation) fn states(&self, parts: usize) -> Vec<f64> {
+    pub(in crate::contact_equation) fn states_of_parts(&self, parts: usize) -> Vec<f64> {
         let skeleton = &self.equations.skeleton;
         let mut states = vec![0.0; skeleton.order * parts];
         let part = skeleton.length / parts as f64;

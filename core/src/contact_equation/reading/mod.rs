@@ -84,7 +84,7 @@ impl Run<'_> {
             parameters: problem.parameters_at(value),
             orbit: Orbit {
                 series: Vec::new(),
-                states: motion.states(problem.period),
+                states: motion.states_of_parts(problem.period),
                 coordinates,
                 omega: problem.omega_at(value),
                 base: rate / recurrence.period as f64,
