@@ -1,0 +1,66 @@
+//! Trees by the contact equation alone: what begins at its events, and what passes an orbit, is followed by it too, and is what shooting finds.
+
+use std::time::Instant;
+
+use hertzian::bifurcation::{Bifurcations, Diagram};
+use hertzian::{
+    Branch, ContactEquation, Event, EventKind, FrequencyResponse, OrbitMethod, OrbitMethodKind,
+    Shooting, Stop,
+};
+use hertzian_tests::{OneSidedLinear, nearest};
+
+use crate::bifurcations::cascade::MODEL;
+
+fn tree<M: OrbitMethod>(method: M, depth: usize) -> Diagram {
+    let request = FrequencyResponse::of(&MODEL).by(method);
+    let request = request.vary("drive").omega(1.0).from(0.1).to(2.0);
+    Bifurcations::starting_with(request).depth(depth).run().unwrap()
+}
+
+fn say(branch: &Branch) {
+    println!(
+        "  period {} by {:?}: {} points {} .. {} {:?} {} turns {}",
+        branch.period(), branch.method(), branch.points.len(), branch.points[0].value,
+        branch.points.last().unwrap().value, branch.begin, branch.stopped, branch.turns.len()
+    );
+    for event in &branch.events { println!("     {event} after {}", event.after); }
+    for turn in &branch.turns { println!("     TURN {turn:?}"); }
+}
+
+#[test]
+fn explore_tree() {
+    for depth in [3] {
+        let start = Instant::now();
+        let shot = tree(Shooting::new(), depth);
+        println!("shooting {:?}", start.elapsed());
+        for b in &shot.branches { println!("{:?}", b.origin); say(&b.branch); }
+        let start = Instant::now();
+        let own = tree(ContactEquation::new(), depth);
+        println!("contact {:?}", start.elapsed());
+        for b in &own.branches { println!("{:?}", b.origin); say(&b.branch); }
+        println!("{:?} {:?}", shot.omitted, own.omitted);
+    }
+}
+
+#[test]
+fn explore_isolas() {
+    let model = OneSidedLinear { zeta: 0.032, load: 1.0, drive: 1.0 };
+    for (period, state) in [
+        (2, [-5.632_060_192_753_841, 3.526_590_078_650_18]),
+        (3, [-31.334_287_816_436_888, 0.605_360_285_158_400_4]),
+        (3, [-6.36, -0.0231]), (4, [-58.4, -2.28]), (5, [-99.53, 1.207])] {
+        let request = FrequencyResponse::of(&model).from(0.4).to(2.2).period(period).near_state(&state);
+        for _ in 0..1 {
+            let start = Instant::now();
+            match request.clone().by(Shooting::new()).through(1.0) {
+                Ok(branch) => { println!("shooting {:?}", start.elapsed()); say(&branch); }
+                Err(e) => println!("{e}"),
+            }
+            let start = Instant::now();
+            match request.clone().by(ContactEquation::new()).through(1.0) {
+                Ok(branch) => { println!("contact {:?}", start.elapsed()); say(&branch); }
+                Err(e) => println!("{e}"),
+            }
+        }
+    }
+}
