@@ -54,6 +54,7 @@ const ASIDE: f64 = 5e-4;
 const NEARER: usize = 6;
 /// What the last change is multiplied by.
 const SAFETY: f64 = 2.0;
+/// What rounding leaves in a value, for each period that a motion is carried over.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// More nodes move a touch by so many times its error before at most; farther away there is another one.
 const SAME_TOUCH: f64 = 100.0;
@@ -138,6 +139,7 @@ type Locate = fn(&mut Equations, &CurvePoint, Test) -> Option<(CurvePoint, f64, 
 /// Where a test function vanishes with more nodes, and more again until that does not change.
 fn located_again(run: &mut Run<'_>, at: &CurvePoint, test: Test, locate: Locate) -> Option<Again> {
     let mut found: Option<Again> = None;
+    let rounding = ROUNDING * run.problem.asked.period as f64;
     for _ in 0..FINER {
         let (from, point) = match &mut found {
             Some(again) => (&mut again.equations, &again.point),
@@ -157,7 +159,7 @@ fn located_again(run: &mut Run<'_>, at: &CurvePoint, test: Test, locate: Locate)
             break;
         };
         let moved = (point.parameter() - value).abs();
-        let error = SAFETY * (moved + apart) + ROUNDING * value.abs();
+        let error = SAFETY * (moved + apart) + rounding * value.abs();
         let known = error <= KNOWN * value.abs();
         found = Some(Again {
             equations: next,
