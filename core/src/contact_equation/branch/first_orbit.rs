@@ -97,12 +97,7 @@ impl FirstOrbit {
         before: &[f64],
         at: &CurvePoint,
     ) -> Option<CurvePoint> {
-        let value = |u: &[f64]| u[u.len() - 1];
         if before.len() != at.u.len() {
-            return None;
-        }
-        let way = (at.parameter() - value(before)).abs();
-        if (self.remembered.point.parameter() - at.parameter()).abs() > AHEAD * way {
             return None;
         }
         let newton = Newton::new(&run.equations);
@@ -110,12 +105,17 @@ impl FirstOrbit {
             let difference: Vec<f64> = a.iter().zip(b).map(|(x, y)| x - y).collect();
             newton.norm().length(at.scale, &difference)
         };
+        let farthest = AHEAD * apart(before, &at.u);
+        let ahead = self.remembered.point.parameter() - at.parameter();
+        if ahead.abs() > farthest * at.scale.parameter {
+            return None;
+        }
         std::mem::swap(&mut run.equations, &mut self.equations);
         let found = run.point_in(&self.remembered.point, &self.equations, &at.u);
         std::mem::swap(&mut run.equations, &mut self.equations);
         let found = found?;
         let here = &self.remembered.here;
-        let is_near = apart(&found.u, &at.u) <= AHEAD * apart(before, &at.u);
+        let is_near = apart(&found.u, &at.u) <= farthest;
         let is_known = !here.is_empty() && apart(&found.u, here) <= SAME;
         (is_near && !is_known).then_some(found)
     }
