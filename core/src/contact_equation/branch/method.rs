@@ -339,11 +339,8 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         if self.first.is_none() && !self.run.record.points.is_empty() {
             self.first = FirstOrbit::new(self.run, &halted.first);
         }
-        let found = match &mut self.first {
-            Some(first) => first.placed(self.run, &next.equations, &next.u),
-            None => None,
-        };
-        found
+        let first = self.first.as_mut();
+        first.and_then(|first| first.placed(self.run, &next.equations, &next.u))
     }
 
     /// A point of the branch in the equations that the walk goes on with, if it has a place there.

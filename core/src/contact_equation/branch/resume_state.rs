@@ -56,8 +56,8 @@ pub(super) struct Made {
     /// Where switches are.
     pub(super) placement: Placement,
     /// What was varied where they were made.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    made: f64,
+    #[cfg_attr(feature = "serde", serde(rename = "made", with = "crate::serialise"))]
+    at: f64,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     reference: Vec<f64>,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
@@ -73,7 +73,7 @@ impl Made {
     pub(super) fn of(equations: &Equations) -> Self {
         Self {
             placement: equations.skeleton.placement.clone(),
-            made: equations.made,
+            at: equations.made,
             reference: equations.reference.clone(),
             size: equations.size,
         }
@@ -81,14 +81,14 @@ impl Made {
 
     /// The equations, where there are any of this problem.
     pub(super) fn equations(&self, problem: &ContactProblem) -> Option<Equations> {
-        let mut numbers = self.reference.iter().chain([&self.size, &self.made]);
+        let mut numbers = self.reference.iter().chain([&self.size, &self.at]);
         let possible = numbers.all(|x| x.is_finite())
             && self.size > 0.0
             && self.reference.len() == 2 * problem.setting.layout.coordinates;
         if !possible {
             return None;
         }
-        let values = problem.setting.values(self.made)?;
+        let values = problem.setting.values(self.at)?;
         let fits = self.placement.fits(&values.contacts);
         if !fits || !problem.admits(&self.placement.beginning.recurrence) {
             return None;
@@ -99,7 +99,7 @@ impl Made {
             self.placement.clone(),
         );
         let (setting, reference) = (problem.setting.clone(), self.reference.clone());
-        Equations::new(setting, self.made, skeleton, reference, self.size)
+        Equations::new(setting, self.at, skeleton, reference, self.size)
     }
 }
 
