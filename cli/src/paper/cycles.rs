@@ -1,4 +1,5 @@
-//! Figures 8a and 9a, and Table 1: orbits of several periods of the one-sided contact of exponent one, by shooting.
+//! Figures 8a and 9a, and Table 1: orbits of several periods of the one-sided contact of exponent one; figure 8a by the method that fits, which is the
+//! contact equation, the others by shooting.
 //!
 //! Every piece of its force is affine, so that motions are known in closed form and nothing is truncated.
 

@@ -24,6 +24,7 @@ use crate::branches::point::Point;
 use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
 use crate::branches::recurrence::Recurrence;
+use crate::branches::solve::Toward;
 use crate::branches::{engine, solve};
 use crate::continuation::follow::{CurvePoint, FollowOptions, Start, Stop};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
@@ -137,6 +138,31 @@ pub(crate) fn branch<'p>(
     ended(problem, run, rest, outcome, options.from, started)
 }
 
+/// The branch from near an orbit at a value on, one way, in a range that the value is in.
+///
+/// # Errors
+/// If there is no such orbit.
+pub(crate) fn branch_from<'p>(
+    problem: &'p ContactProblem,
+    guesses: Guesses<'_, 'p>,
+    value: f64,
+    toward: Toward,
+    [from, to]: [f64; 2],
+    visit: See<'_>,
+) -> Result<Followed, Error> {
+    let started = Instant::now();
+    let (mut run, u) = begun(problem, guesses, value)?;
+    let options = options(problem, from, to);
+    let mut newton = Newton::new(&run.equations);
+    let along = solve::along(&mut run.equations, &mut newton, u, toward, options.newton);
+    let along = along.map_err(|reason| OrbitError::NoStart { value, reason })?;
+    run.statistics += newton.statistics;
+    let mut branch = ContactBranch::new(&mut run, visit);
+    let outcome = engine::run(&mut branch, Start::Along(Box::new(along)), options);
+    let rest = branch.rest.take();
+    ended(problem, run, rest, outcome, value, started)
+}
+
 /// Goes on with a branch that was interrupted.
 ///
 /// # Errors
@@ -152,10 +178,9 @@ pub(crate) fn resume(
     let mut run = rest.run(problem, branch).ok_or(RequestError::Rest)?;
     let options = options(problem, from, to);
     let mut branch = ContactBranch::new(&mut run, visit);
-    if !rest.walk.tests(branch.watched().len()) {
+    if !rest.walk.tests(branch.watched().len()) || !branch.take_up(rest) {
         return Err(RequestError::Rest.into());
     }
-    branch.take_up(rest);
     let outcome = engine::resume(&mut branch, rest.walk.clone(), options);
     let rest = branch.rest.take();
     ended(problem, run, rest, outcome, options.from, started)
@@ -240,7 +265,7 @@ fn begun<'p>(
         let found = fitting(problem, first);
         found.ok_or_else(|| Error::from(lost(value)))
     };
-    fitting(&Guess::by_series(guess)).or_else(|reason| {
+    fitting(&Guess::of(problem, guess)?).or_else(|reason| {
         let Ok(better) = better() else {
             return Err(reason);
         };

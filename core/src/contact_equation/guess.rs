@@ -36,7 +36,21 @@ impl<'g> Guess<'g> {
         }
     }
 
-    /// By the motion from the state of an orbit, which has few harmonics where contacts are stiff.
+    /// By the series of an orbit, or by its motion where that is all that is known.
+    ///
+    /// # Errors
+    /// If the motion cannot be computed.
+    pub(in crate::contact_equation) fn of(
+        problem: &ContactProblem,
+        point: &'g Point,
+    ) -> Result<Self, Error> {
+        if point.orbit.has_series() {
+            return Ok(Self::by_series(point));
+        }
+        Self::by_motion(problem, point)
+    }
+
+    /// By the motion from the states of an orbit, which has few harmonics where contacts are stiff.
     ///
     /// # Errors
     /// If the motion cannot be computed.
@@ -54,9 +68,20 @@ impl<'g> Guess<'g> {
         let mut samples = Vec::new();
         let mut state = point.orbit.state();
         let periods = point.orbit.period;
-        let mut keep = |_: f64, state: &[f64]| samples.extend_from_slice(state);
         let mut map = Stroboscope::new(flow);
-        history::record(&mut map, &mut state, periods, SAMPLES, &mut keep).map_err(failed)?;
+        let known: Vec<&[f64]> = point.orbit.states().collect();
+        // Motions part from an unstable orbit, so that each period begins with the state that is known there.
+        let order = state.len();
+        let is_known = point.orbit.parts == 1 && known.len() == periods;
+        for period in 0..periods {
+            if is_known {
+                state.copy_from_slice(known[period]);
+            }
+            // The last state of a period is the first one of the next.
+            samples.truncate(period * SAMPLES * order);
+            let mut keep = |_: f64, state: &[f64]| samples.extend_from_slice(state);
+            history::record(&mut map, &mut state, 1, SAMPLES, &mut keep).map_err(failed)?;
+        }
         Ok(Self { point, samples })
     }
 

@@ -13,7 +13,9 @@ use crate::orbit::observe::Accuracy;
 /// equal stops, that part is all that is computed.
 ///
 /// Nodes follow the [tolerance](crate::FrequencyResponse::tolerance); events are located again with more nodes until their value is known
-/// to nine digits. Branches that begin at its events, and orbits at a value, are computed by [`Shooting`](crate::Shooting).
+/// to nine digits. A branch that begins at one of its events has its first orbit from [`Shooting`](crate::Shooting), and is followed by the contact
+/// equation from there. Where that finds no equations of its first orbit, shooting follows it, and is its
+/// [method](crate::Branch::method). Orbits at a value are computed by shooting.
 ///
 /// ```
 /// use hertzian::{ContactEquation, FrequencyResponse};

@@ -28,7 +28,7 @@ const fn resolution(nodes: usize, panels: usize) -> Resolution {
 pub(crate) struct ContactProblem {
     pub(super) setting: Setting,
     /// What was asked for, in the time domain.
-    pub(super) asked: ShootingProblem,
+    pub(crate) asked: ShootingProblem,
     /// Asked of peak-to-peak.
     pub(super) tolerance: f64,
 }

@@ -181,6 +181,11 @@ impl Halted {
         }
     }
 
+    /// The direction of its first point is not known in its present unknowns, and so whether it has gone against it: it may have.
+    pub(crate) fn loses_first_direction(&mut self) {
+        self.turned = true;
+    }
+
     /// Whether its step and its scales are numbers that a walk can have: they may have been read from a file.
     pub(crate) fn is_possible(&self) -> bool {
         let positive = |x: f64| x.is_finite() && x > 0.0;

@@ -1,22 +1,28 @@
-//! Requests by the contact equation. What it does not do itself goes on by shooting.
+//! Requests by the contact equation.
+//!
+//! A branch that begins at an event of another one has its first orbit from shooting, which steps off the event in states, and is followed by the contact equation
+//! from there. Where there is no contact equation of the first orbit of a branch, shooting follows it, and is its
+//! [method](Branch::method).
 
 use std::sync::Arc;
 
+use super::both_ways::{BothWays, Part, Way};
 use super::by_shooting;
-use super::following::{Following, begin};
+use super::following::{Following, Left, begin};
 use super::in_turn::Otherwise;
 use super::sealed::Follow;
 use crate::branches::branch::{Branch, Further};
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::request::Request;
+use crate::branches::solve::Toward;
 use crate::contact_equation::compute::{Followed, Guesses, Untouched};
 use crate::contact_equation::problem::ContactProblem;
 use crate::contact_equation::{ContactEquation, Rest, compute};
 use crate::error::Error;
 use crate::event::Side;
 use crate::orbit::observe::Accuracy;
-use crate::shooting::{Asked, Shooting};
+use crate::shooting::{self, Asked, Shooting, with_states};
 
 impl Follow for ContactEquation {
     fn accurate_in(self, accuracy: Accuracy) -> Self {
@@ -48,11 +54,18 @@ impl Follow for ContactEquation {
         side: Side,
         visit: See<'_>,
     ) -> Result<Branch, Error> {
-        self.shooting().switch(request, event, side, visit)
+        let found = switch(request, *self, event, side, &mut *visit);
+        or_shooting(request, found, || {
+            self.shooting().switch(request, event, side, visit)
+        })
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
-        self.shooting().through(request, value, visit)
+        let both = BothWays::through(request, value)?;
+        let found = both_ways(request, *self, None, &both, &mut *visit);
+        or_shooting(request, found, || {
+            self.shooting().through(request, value, visit)
+        })
     }
 }
 
@@ -87,7 +100,9 @@ pub(super) fn run(
 ) -> Result<Branch, Error> {
     let (range, problem) = equation.problem(request)?;
     let (untouched, first) = start(&problem, request, range[0])?;
-    begin(request, || further(request, equation, None, otherwise))?;
+    begin(request, || {
+        further(request, equation, Left::Nothing, otherwise)
+    })?;
     let guesses = Guesses {
         untouched,
         first: first.as_ref(),
@@ -95,6 +110,103 @@ pub(super) fn run(
     };
     let followed = compute::branch(&problem, guesses, range, visit)?;
     Ok(with_request(followed, request, equation, otherwise))
+}
+
+/// What the contact equation has found, or else what shooting finds.
+///
+/// # Errors
+/// Those of the contact equation, where shooting finds nothing either.
+fn or_shooting(
+    request: &Request,
+    found: Result<Branch, Error>,
+    shoot: impl FnOnce() -> Result<Branch, Error>,
+) -> Result<Branch, Error> {
+    found.or_else(|reason| {
+        if request.cancel.is_cancelled() {
+            return Err(reason);
+        }
+        shoot().map_err(|_| reason)
+    })
+}
+
+/// The branch that begins at an event, on one side of it.
+///
+/// # Errors
+/// If the request is not usable, there is no contact equation of the system, or no first orbit.
+fn switch(
+    request: &Request,
+    equation: ContactEquation,
+    event: &Event,
+    side: Side,
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    let shooting = equation.shooting();
+    Asked::of(request, &shooting).belongs(&event.point)?;
+    let (_, request) = by_shooting::of_period(shooting, request, event.period_of_branch());
+    let (range, problem) = equation.problem(&request)?;
+    let event = with_states(&problem.asked, event);
+    let length = (range[1] - range[0]).abs();
+    let (first, toward) =
+        shooting::compute::beginning(&problem.asked, &event, side.sign(), length)?;
+    begin(&request, || {
+        further(&request, equation, Left::Nothing, None)
+    })?;
+    let value = first.value;
+    let guesses = Guesses {
+        untouched: None,
+        first: Some(&first),
+        better: &mut || Ok(first.clone()),
+    };
+    let followed = compute::branch_from(&problem, guesses, value, toward, range, visit)?;
+    Ok(with_request(followed, &request, equation, None))
+}
+
+/// The branch through the orbit at a value, or what is left of it.
+///
+/// # Errors
+/// If there is no such orbit, or what it goes on from does not belong to it.
+pub(super) fn both_ways(
+    request: &Request,
+    equation: ContactEquation,
+    known: Option<&Branch>,
+    both: &BothWays<Rest>,
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    let (range, problem) = equation.problem(request)?;
+    let value = both.value;
+    let mut found = None;
+    let follow = |way: Way, known: Option<(&Branch, &Rest)>| {
+        // Each part ends where the range does.
+        let range = way.of(range);
+        let Followed { branch, rest } = if let Some((branch, rest)) = known {
+            compute::resume(&problem, branch, rest, range, &mut *visit)?
+        } else {
+            let (untouched, first) = match found.take() {
+                Some(first) => (None, Some(first)),
+                None => start(&problem, request, value)?,
+            };
+            let guesses = Guesses {
+                untouched,
+                first: first.as_ref(),
+                better: &mut || equation.shooting().orbit(request, value),
+            };
+            let toward = Toward {
+                side: (range[1] - range[0]).signum(),
+                range: (range[1] - range[0]).abs(),
+            };
+            let followed =
+                compute::branch_from(&problem, guesses, value, toward, range, &mut *visit)?;
+            found = first;
+            followed
+        };
+        Ok(Part { branch, rest })
+    };
+    let (branch, left) = both.follow(known, &request.cancel, follow)?;
+    let left = Left::BothWays(Box::new(left));
+    Ok(Branch {
+        further: further(request, equation, left, None),
+        ..branch
+    })
 }
 
 /// What a branch begins with: the linear response where that meets no contact and nothing else is asked for, or an orbit by another method.
@@ -128,7 +240,9 @@ pub(super) fn resume(
     visit: See<'_>,
 ) -> Result<Branch, Error> {
     let (range, problem) = equation.problem(request)?;
-    begin(request, || further(request, equation, None, otherwise))?;
+    begin(request, || {
+        further(request, equation, Left::Nothing, otherwise)
+    })?;
     let followed = compute::resume(&problem, branch, rest, range, visit)?;
     Ok(with_request(followed, request, equation, otherwise))
 }
@@ -140,7 +254,7 @@ fn with_request(
     otherwise: Option<Otherwise>,
 ) -> Branch {
     Branch {
-        further: further(request, equation, followed.rest, otherwise),
+        further: further(request, equation, Left::one_way(followed.rest), otherwise),
         ..followed.branch
     }
 }
@@ -149,7 +263,7 @@ fn with_request(
 pub(super) fn further(
     request: &Request,
     equation: ContactEquation,
-    rest: Option<Box<Rest>>,
+    rest: Left<Rest>,
     otherwise: Option<Otherwise>,
 ) -> Further {
     let following = Following::ContactEquation {

@@ -34,7 +34,7 @@ pub(super) enum Following {
     ContactEquation {
         request: Request,
         equation: ContactEquation,
-        rest: Option<Box<contact_equation::Rest>>,
+        rest: Left<contact_equation::Rest>,
         /// What is tried where it leads no further; nothing where the contact equation was asked for.
         otherwise: Option<Otherwise>,
     },
@@ -170,6 +170,10 @@ impl Following {
                 ..
             } => Some((both.value, both.middle())),
             Self::Shooting {
+                rest: Left::BothWays(both),
+                ..
+            } => Some((both.value, both.middle())),
+            Self::ContactEquation {
                 rest: Left::BothWays(both),
                 ..
             } => Some((both.value, both.middle())),

@@ -50,6 +50,8 @@ enum Method {
         options: ContactEquation,
         rest: Option<Box<contact_equation::Rest>>,
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        both_ways: Option<Box<BothWays<contact_equation::Rest>>>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         otherwise: Option<Otherwise>,
     },
 }
@@ -127,11 +129,15 @@ impl Following {
                     rest,
                     otherwise,
                     ..
-                } => Method::ContactEquation {
-                    options: *equation,
-                    rest: rest.clone(),
-                    otherwise: *otherwise,
-                },
+                } => {
+                    let (rest, both_ways) = rest.apart();
+                    Method::ContactEquation {
+                        options: *equation,
+                        rest,
+                        both_ways,
+                        otherwise: *otherwise,
+                    }
+                }
             },
         }
     }
@@ -182,13 +188,14 @@ impl Following {
             Method::ContactEquation {
                 options: equation,
                 rest,
+                both_ways,
                 otherwise,
             } => {
                 equation.problem(&request)?;
                 Ok(Self::ContactEquation {
                     request,
                     equation,
-                    rest,
+                    rest: Left::of(rest, both_ways),
                     otherwise,
                 })
             }

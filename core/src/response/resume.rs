@@ -218,48 +218,42 @@ impl Resume<'_> {
         if let Some((either, lost)) = following.either().zip(lost) {
             return self.by_balance(request, either, lost, visit);
         }
-        let resumed = match following {
-            Following::Balance {
-                context,
-                balance,
-                rest: Left::OneWay(rest),
-                ..
-            } => {
+        let both = self.onward_both_ways(following, request, &mut *visit)?;
+        let resumed = match (both, following) {
+            (Some(both), _) => both,
+            (
+                None,
+                Following::Balance {
+                    context,
+                    balance,
+                    rest: Left::OneWay(rest),
+                    ..
+                },
+            ) => {
                 let asked = Asked::of(request, balance);
                 by_balance::resume(asked, context.as_ref().clone(), branch, rest, &mut *visit)?
             }
-            Following::Balance {
-                balance,
-                rest: Left::BothWays(both),
-                ..
-            } if is_left(branch) => {
-                self.unkept()?;
-                let asked = Asked::of(request, balance);
-                by_balance::both_ways(asked, Some(branch), both, &mut *visit)?
-            }
-            Following::Shooting {
-                shooting,
-                rest: Left::OneWay(rest),
-                otherwise,
-                ..
-            } => {
+            (
+                None,
+                Following::Shooting {
+                    shooting,
+                    rest: Left::OneWay(rest),
+                    otherwise,
+                    ..
+                },
+            ) => {
                 let (shooting, other) = (*shooting, *otherwise);
                 by_shooting::resume(request, shooting, other, branch, rest, &mut *visit)?
             }
-            Following::Shooting {
-                shooting,
-                rest: Left::BothWays(both),
-                ..
-            } if is_left(branch) => {
-                self.unkept()?;
-                by_shooting::both_ways(request, *shooting, Some(branch), both, &mut *visit)?
-            }
-            Following::ContactEquation {
-                equation,
-                rest: Some(rest),
-                otherwise,
-                ..
-            } => {
+            (
+                None,
+                Following::ContactEquation {
+                    equation,
+                    rest: Left::OneWay(rest),
+                    otherwise,
+                    ..
+                },
+            ) => {
                 let (equation, other) = (*equation, *otherwise);
                 by_contact_equation::resume(request, equation, other, branch, rest, &mut *visit)?
             }
@@ -267,6 +261,42 @@ impl Resume<'_> {
         };
         let resumed = or_otherwise(following, request, Ok(resumed), visit)?;
         Ok(resumed.after(branch))
+    }
+
+    /// The same of a branch that was followed both ways, if something is left of it.
+    fn onward_both_ways(
+        &self,
+        following: &Following,
+        request: &Request,
+        visit: See<'_>,
+    ) -> Result<Option<Branch>, Error> {
+        let branch = self.branch;
+        if following.both_ways().is_none() || !is_left(branch) {
+            return Ok(None);
+        }
+        self.unkept()?;
+        let resumed = match following {
+            Following::Balance {
+                balance,
+                rest: Left::BothWays(both),
+                ..
+            } => {
+                let asked = Asked::of(request, balance);
+                by_balance::both_ways(asked, Some(branch), both, visit)?
+            }
+            Following::Shooting {
+                shooting,
+                rest: Left::BothWays(both),
+                ..
+            } => by_shooting::both_ways(request, *shooting, Some(branch), both, visit)?,
+            Following::ContactEquation {
+                equation,
+                rest: Left::BothWays(both),
+                ..
+            } => by_contact_equation::both_ways(request, *equation, Some(branch), both, visit)?,
+            _ => return Ok(None),
+        };
+        Ok(Some(resumed))
     }
 
     /// What the balance finds in place of a branch that ended so by the first method, or is left of it.

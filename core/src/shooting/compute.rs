@@ -12,6 +12,7 @@ use crate::branches::branch::Branch;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::request::Guess;
+use crate::branches::solve::Toward;
 use crate::continuation::follow::{Start, Stop};
 use crate::error::Error;
 use crate::model::request::RequestError;
@@ -76,6 +77,23 @@ pub(crate) fn branch_at(
         branch_switch::switch_branch(problem, event, side, (to - from).abs())?;
     let along = |_| Start::Along(Box::new(point));
     followed(problem, first, along, [from, to], visit, started)
+}
+
+/// The first orbit of the branch that begins at an event, on one side of it, and the way that this branch goes from there; a range has this
+/// length.
+///
+/// # Errors
+/// If there is none.
+pub(crate) fn beginning(
+    problem: &ShootingProblem,
+    event: &Event,
+    side: f64,
+    range: f64,
+) -> Result<(Point, Toward), Error> {
+    let Begun { first, point } = branch_switch::switch_branch(problem, event, side, range)?;
+    let side = point.parameter_slope().signum();
+    let found = read(problem, first, point.parameter())?;
+    Ok((found, Toward { side, range }))
 }
 
 /// The branch from the orbit near a guess at a value to the end of a range that the value is in.

@@ -2,7 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use hertzian::{Branch, FrequencyResponse, OrbitMethod, Shooting, Stop};
+use hertzian::{
+    Branch, ContactEquation, FrequencyResponse, OrbitMethod, OrbitMethodKind, Shooting, Stop,
+};
 
 use super::resumed::{ONE, texts, written_and_read};
 
@@ -55,6 +57,15 @@ fn by_shooting() {
     let request = FrequencyResponse::of(&ONE).from(0.66).to(0.73);
     let request = request.by(Shooting::new()).tolerance(1e-5);
     resumes(&request, "both-shooting", 9);
+}
+
+#[test]
+fn by_the_contact_equation() {
+    let request = FrequencyResponse::of(&ONE).from(0.66).to(0.73);
+    let request = request.by(ContactEquation::new()).tolerance(1e-5);
+    resumes(&request, "both-contact", 3);
+    let branch = request.through(VALUE).expect("a branch");
+    assert_eq!(branch.method(), Some(OrbitMethodKind::ContactEquation));
 }
 
 /// Each part may have as many points; with more of them both go on.

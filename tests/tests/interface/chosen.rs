@@ -219,7 +219,7 @@ fn no_broken_symmetry_is_lost_both_ways() {
     let other = quick.switch(event.expect("an event"), Side::One);
     assert_eq!(
         other.expect("a branch").method(),
-        Some(OrbitMethodKind::Shooting)
+        Some(OrbitMethodKind::ContactEquation)
     );
 }
 

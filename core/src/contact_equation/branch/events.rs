@@ -16,6 +16,7 @@
 
 use nalgebra::DMatrix;
 
+use super::event_tangent;
 use super::method::VANISHED;
 use crate::branches::moduli::multipliers;
 use crate::branches::point::{Event, Point};
@@ -53,6 +54,7 @@ const ASIDE: f64 = 5e-4;
 const NEARER: usize = 6;
 /// What the last change is multiplied by.
 const SAFETY: f64 = 2.0;
+/// What rounding leaves in a value, for each period that a motion is carried over.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// More nodes move a touch by so many times its error before at most; farther away there is another one.
 const SAME_TOUCH: f64 = 100.0;
@@ -76,6 +78,7 @@ pub(in crate::contact_equation) fn event(
 ) -> Option<Event> {
     let at = &zero.root.located.point;
     let test = Test::of(zero.change.test);
+    let periods = run.problem.asked.period;
     let read = run.read_event(at)?;
     let mut event = Event {
         kind,
@@ -84,7 +87,7 @@ pub(in crate::contact_equation) fn event(
         test: zero.root.located.test,
         after: zero.after,
         contacts: 0,
-        tangent: at.tangent.clone(),
+        tangent: Vec::new(),
     };
     let crosses = zero.change.kind == EventKind::BranchPoint;
     let again = if crosses {
@@ -99,6 +102,7 @@ pub(in crate::contact_equation) fn event(
         } else {
             f64::INFINITY
         };
+        event.tangent = event_tangent::of_states(&mut run.equations, at, periods);
         return Some(event);
     };
     let map = again.equations.map(&again.point.u);
@@ -108,7 +112,7 @@ pub(in crate::contact_equation) fn event(
         ..point
     };
     (event.error, event.test) = (again.error, again.test);
-    event.tangent = again.point.tangent;
+    event.tangent = event_tangent::of_states(&mut again.equations, &again.point, periods);
     Some(event)
 }
 
@@ -135,6 +139,7 @@ type Locate = fn(&mut Equations, &CurvePoint, Test) -> Option<(CurvePoint, f64, 
 /// Where a test function vanishes with more nodes, and more again until that does not change.
 fn located_again(run: &mut Run<'_>, at: &CurvePoint, test: Test, locate: Locate) -> Option<Again> {
     let mut found: Option<Again> = None;
+    let rounding = ROUNDING * run.problem.asked.period as f64;
     for _ in 0..FINER {
         let (from, point) = match &mut found {
             Some(again) => (&mut again.equations, &again.point),
@@ -154,7 +159,7 @@ fn located_again(run: &mut Run<'_>, at: &CurvePoint, test: Test, locate: Locate)
             break;
         };
         let moved = (point.parameter() - value).abs();
-        let error = SAFETY * (moved + apart) + ROUNDING * value.abs();
+        let error = SAFETY * (moved + apart) + rounding * value.abs();
         let known = error <= KNOWN * value.abs();
         found = Some(Again {
             equations: next,
@@ -428,7 +433,7 @@ fn keep_touch(run: &mut Run<'_>, touch: &Touch, at: &CurvePoint) {
         test: touch.located.test,
         after: touch.after,
         contacts: touch.contacts,
-        tangent: at.tangent.clone(),
+        tangent: event_tangent::of_states(&mut run.equations, at, run.problem.asked.period),
     });
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::events;
+use super::first_orbit::FirstOrbit;
 use super::resume_state::Rest;
 use crate::branches::branch_start::step_on_other_branch;
 use crate::branches::checkpoint::keep;
@@ -23,7 +24,7 @@ use crate::contact_equation::switches::fits::Fits;
 use crate::continuation::follow::{Continue, CurvePoint, Halted, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
-use crate::continuation::problem::Problem;
+use crate::continuation::problem::{Problem, Scale};
 use crate::event::EventKind;
 use crate::shooting::test_functions::{self, Tests};
 
@@ -63,7 +64,11 @@ pub(in crate::contact_equation) struct ContactBranch<'b, 'r> {
     /// Where it was before the last step.
     pub(in crate::contact_equation) rest: Option<Box<Rest>>,
     /// The equations before, while others are tried.
-    before: Option<(Equations, usize)>,
+    before: Option<Before>,
+    /// The first orbit, where equations have changed since.
+    pub(super) first: Option<FirstOrbit>,
+    /// The same as a point of the present equations, in which the walk does not have it yet.
+    first_here: Option<CurvePoint>,
     /// Other equations lead nowhere from the last point.
     pub(super) stuck: bool,
     /// How often the last point was refused.
@@ -113,6 +118,14 @@ fn divisor(at: &CurvePoint) -> f64 {
     at.known_slope(VANISHING).unwrap_or(f64::NAN)
 }
 
+/// What the walk was followed by before.
+struct Before {
+    equations: Equations,
+    resolution: usize,
+    /// The first orbit in these equations, where it was remembered.
+    first: Vec<f64>,
+}
+
 /// What the walk goes on with.
 struct Next {
     equations: Equations,
@@ -130,6 +143,17 @@ enum Same {
     Switches,
     /// All but the shapes of gaps by which pairs of switches are told.
     Panels,
+}
+
+/// A point that no curve passes, in so many extended unknowns.
+fn nowhere(scale: Scale, length: usize) -> CurvePoint {
+    let mut u = vec![0.0; length];
+    u[length - 1] = NOWHERE;
+    CurvePoint {
+        u,
+        tangent: vec![0.0; length],
+        scale,
+    }
 }
 
 /// Beside a touch a tangent in other unknowns is a difference across it, and may lead back. The last step tells which way the walk goes.
@@ -158,6 +182,8 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             next: None,
             rest: None,
             before: None,
+            first: None,
+            first_here: None,
             stuck: false,
             refused: 0,
             shortened: 0,
@@ -315,7 +341,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         self.refused = 0;
         self.shortened = 0;
         self.displaced = 0;
-        self.kept.clone_from(&at.u);
+        let before = std::mem::replace(&mut self.kept, at.u.clone());
         self.held = self.held.saturating_sub(1);
         self.run.equations.known[0].clone_from(&at.u);
         if !self.keep_point(at, read) {
@@ -331,7 +357,21 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         if !other && !stuck && self.prepare_reshaped(at) {
             return Read::ResizeBehind;
         }
+        let first = self.first.as_mut();
+        self.first_here = first.and_then(|first| first.ahead(self.run, &before, at));
+        if self.first_here.is_some() {
+            return Read::ResizeBehind;
+        }
         Read::Kept
+    }
+
+    /// Where the first orbit of a walk is in the equations that it goes on with.
+    fn first_in(&mut self, halted: &Halted, next: &Next) -> Option<CurvePoint> {
+        if self.first.is_none() && !self.run.record.points.is_empty() {
+            self.first = FirstOrbit::new(self.run, &halted.first);
+        }
+        let first = self.first.as_mut();
+        first.and_then(|first| first.placed(self.run, &next.equations, &next.u))
     }
 
     /// A point of the branch in the equations that the walk goes on with, if it has a place there.
@@ -474,6 +514,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
     }
 
     fn read(&mut self, _: &mut Newton, at: &CurvePoint) -> Read {
+        self.first_here = None;
         let stuck = std::mem::take(&mut self.stuck);
         let again = !stuck && self.refused < REFUSALS;
         self.run
@@ -575,19 +616,19 @@ impl BranchProblem for ContactBranch<'_, '_> {
     }
 
     fn remap(&mut self, halted: &mut Halted) {
+        if let Some(found) = self.first_here.take() {
+            if let Some(first) = &mut self.first {
+                first.is_at(found.u.clone());
+            }
+            halted.first = found;
+            self.before = None;
+            return;
+        }
         let Some(next) = self.next.take() else {
             return;
         };
         let length = next.u.len();
-        let nowhere = |scale| {
-            let mut u = vec![0.0; length];
-            u[length - 1] = NOWHERE;
-            CurvePoint {
-                u,
-                tangent: vec![0.0; length],
-                scale,
-            }
-        };
+        let first = self.first_in(halted, &next);
         let mut point = |of: &CurvePoint| self.point_in(of, &next);
         if let Some(known) = point(&halted.point) {
             halted.point.tangent = known.tangent;
@@ -599,8 +640,15 @@ impl BranchProblem for ContactBranch<'_, '_> {
         if let Some(previous) = &halted.previous {
             look_ahead(&mut halted.point, previous, &next.equations);
         }
+        let here = first
+            .as_ref()
+            .map_or_else(Vec::new, |first| first.u.clone());
+        let place = self.first.as_mut().map(|place| place.is_at(here));
         // A curve is not closed where its first point has no place.
-        halted.first = point(&halted.first).unwrap_or_else(|| nowhere(halted.first.scale));
+        halted.first = first.unwrap_or_else(|| nowhere(halted.first.scale, length));
+        if halted.first.parameter() >= NOWHERE {
+            halted.loses_first_direction();
+        }
         self.kept = match &halted.previous {
             _ if self.refused == 0 => next.u.clone(),
             Some(previous) => previous.u.clone(),
@@ -617,14 +665,21 @@ impl BranchProblem for ContactBranch<'_, '_> {
         let known = std::mem::replace(&mut self.run.equations, equations);
         self.run.equations.known = [u, Vec::new()];
         self.run.clear_finer();
-        self.before = Some((known, former));
+        self.before = Some(Before {
+            equations: known,
+            resolution: former,
+            first: place.unwrap_or_default(),
+        });
         self.tested = None;
     }
 
     fn revert(&mut self) {
-        if let Some((equations, resolution)) = self.before.take() {
-            self.run.equations = equations;
-            self.run.resolution = resolution;
+        if let Some(before) = self.before.take() {
+            self.run.equations = before.equations;
+            self.run.resolution = before.resolution;
+            if let Some(first) = &mut self.first {
+                first.is_at(before.first);
+            }
             self.run.clear_finer();
             self.tested = None;
             self.kept.clear();

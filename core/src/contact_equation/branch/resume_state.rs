@@ -1,5 +1,6 @@
 //! Where a run by the contact equation is, as data: what is left of it follows from that.
 
+use super::first_orbit::Remembered;
 use super::method::{ContactBranch, DISPLACED, HELD, Last, REFUSALS, SHORTENED};
 use crate::branches::branch::Branch;
 use crate::branches::engine::Walk;
@@ -16,14 +17,9 @@ use crate::contact_equation::skeleton::placement::Placement;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Rest {
     pub(in crate::contact_equation) walk: Walk,
-    /// Of the equations: where switches are, and what was varied where they were made.
-    placement: Placement,
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    made: f64,
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    reference: Vec<f64>,
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    size: f64,
+    /// The equations.
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    made: Made,
     /// Place among the resolutions.
     resolution: usize,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
@@ -48,34 +44,51 @@ pub(crate) struct Rest {
     kept: Vec<f64>,
     /// Points that are followed before fewer nodes are tried.
     held: usize,
+    /// The first orbit, where equations have changed since.
+    #[cfg_attr(feature = "serde", serde(default))]
+    first: Option<Remembered>,
 }
 
-impl Rest {
-    /// The run that goes on with a branch. `None` where it is no rest of this branch: it may have been read from a file.
-    pub(in crate::contact_equation) fn run<'r>(
-        &self,
-        problem: &'r ContactProblem,
-        branch: &Branch,
-    ) -> Option<Run<'r>> {
-        let coordinates = problem.setting.layout.coordinates;
-        let resolution = *RESOLUTIONS.get(self.resolution)?;
-        let vectors = [&self.reference, &self.kept].into_iter();
-        let vectors = vectors.chain(&self.known);
-        let numbers = vectors.flatten().chain([&self.size, &self.made]);
-        let mut numbers = numbers.chain(&self.finer);
+/// What equations are made from.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Made {
+    /// Where switches are.
+    pub(super) placement: Placement,
+    /// What was varied where they were made.
+    #[cfg_attr(feature = "serde", serde(rename = "made", with = "crate::serialise"))]
+    at: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    reference: Vec<f64>,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    size: f64,
+}
+
+/// Whether these are extended unknowns, of so many.
+pub(super) fn is_vector(u: &[f64], unknowns: usize) -> bool {
+    u.len() == unknowns + 1 && u.iter().all(|x| x.is_finite())
+}
+
+impl Made {
+    pub(super) fn of(equations: &Equations) -> Self {
+        Self {
+            placement: equations.skeleton.placement.clone(),
+            at: equations.made,
+            reference: equations.reference.clone(),
+            size: equations.size,
+        }
+    }
+
+    /// The equations, where there are any of this problem.
+    pub(super) fn equations(&self, problem: &ContactProblem) -> Option<Equations> {
+        let mut numbers = self.reference.iter().chain([&self.size, &self.at]);
         let possible = numbers.all(|x| x.is_finite())
-            && self.screened.iter().all(Screened::is_possible)
-            && self.refused <= REFUSALS
-            && self.shortened <= SHORTENED
-            && self.displaced <= DISPLACED
-            && self.held <= HELD
             && self.size > 0.0
-            && self.reference.len() == 2 * coordinates
-            && self.placement.resolution == resolution;
+            && self.reference.len() == 2 * problem.setting.layout.coordinates;
         if !possible {
             return None;
         }
-        let values = problem.setting.values(self.made)?;
+        let values = problem.setting.values(self.at)?;
         let fits = self.placement.fits(&values.contacts);
         if !fits || !problem.admits(&self.placement.beginning.recurrence) {
             return None;
@@ -85,13 +98,37 @@ impl Rest {
             &values,
             self.placement.clone(),
         );
+        let (setting, reference) = (problem.setting.clone(), self.reference.clone());
+        Equations::new(setting, self.at, skeleton, reference, self.size)
+    }
+}
+
+impl Rest {
+    /// The run that goes on with a branch. `None` where it is no rest of this branch: it may have been read from a file.
+    pub(in crate::contact_equation) fn run<'r>(
+        &self,
+        problem: &'r ContactProblem,
+        branch: &Branch,
+    ) -> Option<Run<'r>> {
+        let resolution = *RESOLUTIONS.get(self.resolution)?;
+        let vectors = [&self.kept].into_iter().chain(&self.known);
+        let mut numbers = vectors.flatten().chain(&self.finer);
+        let possible = numbers.all(|x| x.is_finite())
+            && self.screened.iter().all(Screened::is_possible)
+            && self.refused <= REFUSALS
+            && self.shortened <= SHORTENED
+            && self.displaced <= DISPLACED
+            && self.held <= HELD
+            && self.made.placement.resolution == resolution;
+        if !possible {
+            return None;
+        }
+        let mut equations = self.made.equations(problem)?;
         let frame = Frame {
-            reference: self.reference.clone(),
-            size: self.size,
+            reference: self.made.reference.clone(),
+            size: self.made.size,
             resolution,
         };
-        let (setting, reference) = (problem.setting.clone(), self.reference.clone());
-        let mut equations = Equations::new(setting, self.made, skeleton, reference, self.size)?;
         let unknowns = equations.skeleton.unknowns();
         let is_known = |known: &Vec<f64>| known.is_empty() || known.len() == unknowns + 1;
         let mut known = self.known.iter().chain([&self.kept]);
@@ -101,7 +138,7 @@ impl Rest {
         if !self
             .last
             .as_ref()
-            .is_none_or(|last| last.is_of(values.order()))
+            .is_none_or(|last| last.is_of(equations.values.order()))
         {
             return None;
         }
@@ -118,16 +155,13 @@ impl ContactBranch<'_, '_> {
     /// Where it is.
     pub(in crate::contact_equation) fn rest(&self, walk: Walk) -> Rest {
         let run = &*self.run;
-        let equations = &run.equations;
         let (finer, screened) = run.memory();
+        let first = self.first.as_ref();
         Rest {
             walk,
-            placement: equations.skeleton.placement.clone(),
-            made: equations.made,
-            reference: equations.reference.clone(),
-            size: equations.size,
+            made: Made::of(&run.equations),
             resolution: run.resolution,
-            known: equations.known.to_vec(),
+            known: run.equations.known.to_vec(),
             finer,
             screened,
             last: self.last.clone(),
@@ -137,14 +171,20 @@ impl ContactBranch<'_, '_> {
             displaced: self.displaced,
             kept: self.kept.clone(),
             held: self.held,
+            first: first.map(|first| first.remembered.clone()),
         }
     }
 
-    /// As it was there.
-    pub(in crate::contact_equation) fn take_up(&mut self, rest: &Rest) {
+    /// As it was there. Says whether it may be so: it may have been read from a file.
+    pub(in crate::contact_equation) fn take_up(&mut self, rest: &Rest) -> bool {
+        let unknowns = self.run.equations.skeleton.unknowns();
+        let problem = self.run.problem;
+        let first = rest.first.as_ref();
+        self.first = first.and_then(|first| first.checked(problem, unknowns));
         (self.stuck, self.refused, self.held) = (rest.stuck, rest.refused, rest.held);
         (self.shortened, self.displaced) = (rest.shortened, rest.displaced);
         self.kept.clone_from(&rest.kept);
         self.last.clone_from(&rest.last);
+        self.first.is_some() == rest.first.is_some()
     }
 }

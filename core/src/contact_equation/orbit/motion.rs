@@ -74,6 +74,17 @@ impl<'e> Motion<'e> {
         self.equations.passed[interval].phases
     }
 
+    /// The states at the beginnings of so many parts of equal length.
+    pub(in crate::contact_equation) fn states_of_parts(&self, parts: usize) -> Vec<f64> {
+        let skeleton = &self.equations.skeleton;
+        let mut states = vec![0.0; skeleton.order * parts];
+        let part = skeleton.length / parts as f64;
+        for (index, state) in states.chunks_exact_mut(skeleton.order).enumerate() {
+            self.at(part * index as f64, state);
+        }
+        states
+    }
+
     /// Writes positions and velocities at any phase.
     pub(in crate::contact_equation) fn at(&self, phase: f64, state: &mut [f64]) {
         let skeleton = &self.equations.skeleton;

@@ -78,18 +78,13 @@ impl Run<'_> {
         });
         let skeleton = &equations.skeleton;
         let recurrence = skeleton.recurrence();
-        let mut states = vec![0.0; 2 * coordinates * problem.period];
-        let segment = skeleton.length / problem.period as f64;
-        for (index, state) in states.chunks_exact_mut(2 * coordinates).enumerate() {
-            motion.at(segment * index as f64, state);
-        }
         let switches = switches(equations);
         Point {
             value,
             parameters: problem.parameters_at(value),
             orbit: Orbit {
                 series: Vec::new(),
-                states,
+                states: motion.states_of_parts(problem.period),
                 coordinates,
                 omega: problem.omega_at(value),
                 base: rate / recurrence.period as f64,

@@ -69,7 +69,7 @@ impl First {
         let otherwise = Some(otherwise);
         match self {
             Self::ContactEquation(equation) => {
-                by_contact_equation::further(request, equation, None, otherwise)
+                by_contact_equation::further(request, equation, Left::Nothing, otherwise)
             }
             Self::Shooting(shooting) => {
                 by_shooting::further(request, shooting, Left::Nothing, otherwise)

@@ -8,7 +8,7 @@ use hertzian::{
 use hertzian_tests::{OneSidedLinear, nearest};
 
 use crate::bifurcations::cascade::{
-    A1, A4, A6, Exact, MODEL, PERIOD_2_LOWER_FOLD, PERIOD_2_UPPER_FOLD, PERIOD_8_FOLD, diagram,
+    A1, A4, A6, Exact, MODEL, PERIOD_2_LOWER_FOLD, PERIOD_2_UPPER_FOLD, PERIOD_8_FOLD, diagram_by,
 };
 
 /// Events of two branches that are one are that near to each other.
@@ -28,7 +28,7 @@ fn both_ways(point: &Point, period: usize) -> [Branch; 2] {
 }
 
 /// Where a branch ends on one of shorter orbits there is a branch point, which is the doubling of the latter.
-fn ends_at_a_doubling(branch: &Branch, diagram: &Diagram) {
+pub fn ends_at_a_doubling(branch: &Branch, diagram: &Diagram) {
     let Stop::Joined { value, .. } = branch.stopped else {
         return;
     };
@@ -48,7 +48,7 @@ fn ends_at_a_doubling(branch: &Branch, diagram: &Diagram) {
 }
 
 /// The nearest event of a kind.
-fn same<'e>(events: impl Iterator<Item = &'e Event>, wanted: &Event) -> Option<&'e Event> {
+pub fn same<'e>(events: impl Iterator<Item = &'e Event>, wanted: &Event) -> Option<&'e Event> {
     let of_kind = events.filter(|event| event.kind == wanted.kind);
     // A branch may have two at one value.
     let near = of_kind.filter(|event| {
@@ -65,7 +65,7 @@ fn same<'e>(events: impl Iterator<Item = &'e Event>, wanted: &Event) -> Option<&
 /// are the events of that branch, and all of them.
 #[test]
 fn the_tree_of_figure_8a_is_that_of_shooting() {
-    let diagram = diagram(3);
+    let diagram = diagram_by(Shooting::new(), 3);
     assert_eq!(diagram.branches.len(), 7);
     for tree in &diagram.branches {
         let points = &tree.branch.points;
@@ -98,7 +98,7 @@ fn the_tree_of_figure_8a_is_that_of_shooting() {
 }
 
 /// To rounding, and within what is stated.
-fn is_exact<'e>(events: impl Iterator<Item = &'e Event>, kind: EventKind, exact: &Exact) {
+pub fn is_exact<'e>(events: impl Iterator<Item = &'e Event>, kind: EventKind, exact: &Exact) {
     let of_kind = events.filter(|event| event.kind == kind);
     let found = nearest(of_kind, exact.drive, |event| event.point.value).unwrap();
     let error = (found.point.value - exact.drive).abs();
@@ -110,7 +110,7 @@ fn is_exact<'e>(events: impl Iterator<Item = &'e Event>, kind: EventKind, exact:
 
 #[test]
 fn exact_values_of_figure_8a_are_found() {
-    let diagram = diagram(3);
+    let diagram = diagram_by(Shooting::new(), 3);
     let of = |period: usize| {
         let mut branches = diagram.branches.iter().filter(|of| of.period() == period);
         let walks = branches.by_ref().flat_map(|of| {

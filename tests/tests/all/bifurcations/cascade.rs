@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use hertzian::bifurcation::{Bifurcations, Diagram, Origin, Reason};
 use hertzian::time;
 use hertzian::time::stroboscope::Stroboscope;
-use hertzian::{Event, EventKind, Stop};
+use hertzian::{Chosen, Event, EventKind, OrbitMethod, Stop};
 use hertzian_tests::{OneSidedLinear, nearest};
 
 pub const MODEL: OneSidedLinear = OneSidedLinear {
@@ -49,8 +49,13 @@ pub const PERIOD_8_FOLD: Exact = Exact {
 };
 
 pub fn diagram(depth: usize) -> Diagram {
+    diagram_by(Chosen::new(), depth)
+}
+
+pub fn diagram_by<M: OrbitMethod>(method: M, depth: usize) -> Diagram {
     let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
-    request.from(0.1).to(2.0).depth(depth).run().unwrap()
+    let request = request.from(0.1).to(2.0).depth(depth).by(method);
+    request.run().unwrap()
 }
 
 /// One of the events is the exact one, as close as the doubled precision of the flow allows.

@@ -26,6 +26,7 @@ mod narrow;
 mod symmetry;
 mod table;
 mod torus;
+mod trees;
 mod unbounded;
 mod units;
 mod vertical;
