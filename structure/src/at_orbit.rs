@@ -1,12 +1,13 @@
 //! What the errors of a reduction are made of at an orbit: forces, gaps, and what is not known of compliances.
 
 use hertzian::structure::Value;
-use hertzian::{Branch, Error, Point};
+use hertzian::{Branch, Cancel, Error, Point};
 
-use crate::description::{LoadKind, SparseStructure};
-use crate::doubt::Doubt;
+use crate::arms::Arm;
+use crate::description::{LoadKind, OutputKind, SparseStructure};
+use crate::doubt::{self, Doubt};
 use crate::feedback::Feedback;
-use crate::gaps::Gap;
+use crate::gaps::{self, Gap};
 use crate::reduced::{Reduced, ReducedError};
 
 /// Harmonics of an orbit at which compliances are measured.
@@ -24,6 +25,8 @@ pub(crate) struct AtOrbit<'s> {
     pub(crate) measured: Reduced,
     pub(crate) doubt: Doubt,
     pub(crate) gaps: Vec<Gap<'s>>,
+    /// Of each contact.
+    pub(crate) arms: Vec<Vec<Arm>>,
 }
 
 /// Values of parameters at an orbit.
@@ -42,16 +45,34 @@ struct Forces {
 }
 
 impl Forces {
-    fn of(structure: &SparseStructure, branch: &Branch, point: &Point) -> Result<Self, Error> {
-        let mut forces: Vec<(usize, Vec<f64>)> = Vec::new();
+    fn of(
+        reduced: &Reduced,
+        structure: &SparseStructure,
+        branch: &Branch,
+        point: &Point,
+    ) -> Result<Self, Error> {
+        // Forces along one row come together with their phases.
+        let mut along: Vec<(usize, Vec<f64>)> = Vec::new();
         let mut base = point.omega();
         for (index, contact) in structure.contacts.iter().enumerate() {
             let reading = branch.reading(&contact.name, point)?;
             base = reading.base;
-            let lines = reading.spectrum();
-            let amplitudes = lines.iter().map(|line| line.amplitude).collect();
-            forces.push((2 * index + 1, amplitudes));
+            for arm in Arm::of(contact, index, [point.omega(), base]) {
+                let series = arm.times(&reading.series);
+                let row = reduced.first_like(arm.driven);
+                match along.iter_mut().find(|(known, _)| *known == row) {
+                    Some((_, sum)) => gaps::add(sum, 1.0, &series),
+                    None => along.push((row, series)),
+                }
+            }
         }
+        let sizes = along.into_iter().map(|(row, series)| {
+            let pairs = series.get(1..).unwrap_or_default().chunks_exact(2);
+            let harmonics = pairs.map(|pair| pair[0].hypot(pair[1]));
+            let mean = series.first().copied().unwrap_or(0.0).abs();
+            (row, [mean].into_iter().chain(harmonics).collect())
+        });
+        let mut forces: Vec<(usize, Vec<f64>)> = sizes.collect();
         let per_load = (point.omega() / base).round().max(1.0) as usize;
         for (index, load) in structure.loads.iter().enumerate() {
             let amplitude = load.amplitude.at(known(branch, point), point.omega());
@@ -81,28 +102,35 @@ impl<'s> AtOrbit<'s> {
         structure: &'s SparseStructure,
         branch: &Branch,
         point: &Point,
+        cancel: &Cancel,
     ) -> Result<Self, ReducedError> {
         reduced.is_of(structure)?;
-        let Forces { amplitudes, base } = Forces::of(structure, branch, point)?;
+        let Forces { amplitudes, base } = Forces::of(reduced, structure, branch, point)?;
         let of = |value: &Value| value.at(known(branch, point), point.omega());
         let speeds: Vec<f64> = structure.gyroscopic.iter().map(|g| of(&g.speed)).collect();
         let completed = branch.complete(point)?;
         if completed.orbit.coordinates() != reduced.vectors() {
             return Err(ReducedError::Other);
         }
-        let gaps = structure.contacts.iter().enumerate();
-        let gaps = gaps.map(|(index, contact)| {
+        let arms = structure.contacts.iter().enumerate();
+        let arms = arms.map(|(index, contact)| Arm::of(contact, index, [point.omega(), base]));
+        let arms: Vec<Vec<Arm>> = arms.collect();
+        let gaps = structure.contacts.iter().zip(&arms);
+        let gaps = gaps.map(|(contact, arms)| {
             let arguments = contact.arguments.iter().map(of).collect();
-            let (row, offset) = (&reduced.rows[2 * index], of(&contact.offset));
-            Gap::of(&*contact.law, arguments, row, offset, &completed.orbit)
+            let offset = of(&contact.offset);
+            let (law, orbit) = (&*contact.law, &completed.orbit);
+            Gap::of(law, arguments, reduced, arms, offset, orbit)
         });
         let harmonics = (1..=HARMONICS).map(|k| k as f64 * base);
+        let measured = reduced.measured(structure, harmonics, cancel)?;
         Ok(Self {
             base,
             forces: amplitudes,
-            measured: reduced.measured(structure, harmonics),
+            measured,
             doubt: Doubt::of_orbit(reduced, structure, &speeds, base),
             gaps: gaps.collect(),
+            arms,
             speeds,
         })
     }
@@ -110,16 +138,25 @@ impl<'s> AtOrbit<'s> {
     /// What the contacts of a reduced structure do here, which may be a place where the branch turns.
     pub(crate) fn feedback<'r>(&self, reduced: &'r Reduced, at_fold: bool) -> Feedback<'r> {
         let slopes = self.gaps.iter().map(Gap::slopes).collect();
-        Feedback::of(reduced, &self.speeds, self.base, slopes, at_fold)
+        let damping = doubt::damping(reduced, &self.speeds);
+        Feedback::of(reduced, &damping, self.base, slopes, &self.arms, at_fold)
     }
 
-    /// By how much gaps are off, harmonic by harmonic, without what contacts make of that.
-    pub(crate) fn off(&self) -> Vec<Vec<f64>> {
-        let contacts = 0..self.gaps.len();
-        let of = |contact: usize| {
-            let measured = &self.measured;
-            measured.harmonics_off(2 * contact, self.base, &self.forces, &self.doubt)
+    /// By how much what gaps are made of is off, harmonic by harmonic, without what contacts make of that: rows along which contacts are read,
+    /// each once.
+    pub(crate) fn off(&self) -> Vec<(usize, Vec<f64>)> {
+        let measured = &self.measured;
+        let mut rows: Vec<usize> = Vec::new();
+        for arm in self.arms.iter().flatten() {
+            let row = measured.first_like(arm.read);
+            if !rows.contains(&row) {
+                rows.push(row);
+            }
+        }
+        let of = |row: usize| {
+            let kind = OutputKind::Displacement;
+            measured.harmonics_off(row, kind, self.base, &self.forces, &self.doubt)
         };
-        contacts.map(of).collect()
+        rows.into_iter().map(|row| (row, of(row))).collect()
     }
 }

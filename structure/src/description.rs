@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use hertzian::law::Law;
-use hertzian::structure::Value;
+use hertzian::structure::{Turn, Value};
 use hertzian::system::ParameterFacts;
 
 use crate::error::StructureError;
@@ -215,6 +215,8 @@ pub struct SparseContact {
     pub(crate) arguments: Vec<Value>,
     pub(crate) gap: Direction,
     pub(crate) force: Option<Direction>,
+    /// Towards which direction, and how, that of gap and force turns.
+    pub(crate) turning: Option<(Direction, Turn)>,
     pub(crate) offset: Value,
 }
 
@@ -227,6 +229,7 @@ impl SparseContact {
             arguments: Vec::new(),
             gap,
             force: None,
+            turning: None,
             offset: 0.0.into(),
         }
     }
@@ -243,6 +246,39 @@ impl SparseContact {
     pub fn force_direction(mut self, direction: Direction) -> Self {
         self.force = Some(direction);
         self
+    }
+
+    /// The direction of gap and force turns from that of the gap towards this one: it is `cos(angle) gap + sin(angle) across`, with the angle that
+    /// a [`Turn`] has. No other direction of the force can be given then.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    ///
+    /// use hertzian::structure::Turn;
+    /// use hertzian_structure::{Direction, SparseContact};
+    ///
+    /// hertzian::law! {
+    ///     Ball(gap) { gap > 0 => gap^1.5, else => 0 }
+    /// }
+    ///
+    /// // The balls of a bearing between the coordinates 0, downwards, and 1, across.
+    /// let balls = (0..8).map(|ball| {
+    ///     let turn = Turn::by(2, 5).from(std::f64::consts::TAU / 8.0 * f64::from(ball));
+    ///     let contact = SparseContact::new(&format!("ball{ball}"), Arc::new(Ball), Direction::at(0));
+    ///     contact.turning(Direction::at(1), turn).offset(0.1)
+    /// });
+    /// assert_eq!(balls.count(), 8);
+    /// ```
+    #[must_use]
+    pub fn turning(mut self, across: Direction, turn: Turn) -> Self {
+        self.turning = Some((across, turn));
+        self
+    }
+
+    /// The direction of the force; of one that turns that towards which it does.
+    pub(crate) fn second(&self) -> &Direction {
+        let across = self.turning.as_ref().map(|(across, _)| across);
+        across.or(self.force.as_ref()).unwrap_or(&self.gap)
     }
 
     /// What is subtracted from the gap.
@@ -289,8 +325,10 @@ pub(crate) struct Output {
 /// A linear structure of many coordinates with contacts.
 ///
 /// ```text
-/// M q'' + (C + sum_g s_g G_g) q' + K q + sum_c e_c phi_c(d_c . q - delta_c, d_c . q') = sum_l b_l              (1)
+/// M q'' + (C + sum_g s_g G_g) q' + K q + sum_c e_c phi_c(d_c . q - delta_c, (d_c . q)') = sum_l b_l              (1)
 /// ```
+///
+/// where the directions `e_c = d_c` of a contact may turn.
 #[derive(Debug, Clone)]
 pub struct SparseStructure {
     pub(crate) name: String,
@@ -431,6 +469,14 @@ impl SparseStructure {
         &self.stiffness
     }
 
+    /// The parameter that all loads which change with time are proportional to; none where there is no such load, or they have others.
+    pub fn drive(&self) -> Option<&str> {
+        let changing = self.loads.iter().filter(|load| load.harmonic > 0);
+        let mut names = changing.map(|load| load.amplitude.name());
+        let first = names.next()??;
+        names.all(|name| name == Some(first)).then_some(first)
+    }
+
     /// How many coordinates it has.
     pub fn coordinates(&self) -> usize {
         self.mass.rows()
@@ -472,10 +518,10 @@ impl SparseStructure {
         for contact in &self.contacts {
             let of = || format!("contact `{}`", contact.name);
             self.directed(&contact.gap, of)?;
-            contact
-                .force
-                .iter()
-                .try_for_each(|force| self.directed(force, of))?;
+            self.directed(contact.second(), of)?;
+            if contact.turning.is_some() && contact.force.is_some() {
+                return Err(StructureError::TurningForce { what: of() });
+            }
         }
         for output in &self.outputs {
             self.directed(&output.direction, || format!("output `{}`", output.name))?;

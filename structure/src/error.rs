@@ -47,6 +47,12 @@ pub enum StructureError {
         /// Its mass.
         mass: f64,
     },
+    /// The direction of a contact turns, and its force has another one.
+    #[error("the direction of {what} turns: its force cannot have another one")]
+    TurningForce {
+        /// Which contact.
+        what: String,
+    },
     /// A damping ratio or factor is negative or not finite.
     #[error("damping of {value}: ratios and factors must be finite and not negative")]
     Damping {

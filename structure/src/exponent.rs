@@ -20,6 +20,7 @@ use std::f64::consts::TAU;
 use hertzian::Complex;
 use hertzian::structure::DMatrix;
 
+use crate::arms::Arm;
 use crate::at_orbit::{AtOrbit, HARMONICS};
 use crate::floquet::Mode;
 use crate::gaps::{Gap, Slopes, TIMES};
@@ -118,7 +119,7 @@ impl Contacts {
         measured: &Reduced,
         mode: &Mode,
     ) -> Change {
-        let along = Along::of(reduced, &self.means, mode);
+        let along = Along::of(reduced, &self.means, &at.arms, mode);
         let waves = Waves::new();
         let of_static = reduced.modes..reduced.vectors();
         let ratio = of_static.map(|i| {
@@ -236,29 +237,45 @@ impl Compliance {
 struct Along<'m> {
     mode: &'m Mode,
     means: &'m [Slopes],
+    arms: &'m [Vec<Arm>],
     gaps: Vec<Vec<Complex<f64>>>,
     rates: Vec<Vec<Complex<f64>>>,
     adjoint: Vec<Vec<Complex<f64>>>,
 }
 
 impl<'m> Along<'m> {
-    fn of(reduced: &Reduced, means: &'m [Slopes], mode: &'m Mode) -> Self {
-        let along = |vectors: &DMatrix<Complex<f64>>, place: usize| -> Vec<Vec<Complex<f64>>> {
-            let of = |contact: usize| {
-                let row = &reduced.rows[2 * contact + place];
-                let columns = vectors.column_iter();
-                let dot =
-                    |column: &[Complex<f64>]| column.iter().zip(row).map(|(x, d)| x * *d).sum();
-                columns.map(|column| dot(column.as_slice())).collect()
+    fn of(reduced: &Reduced, means: &'m [Slopes], arms: &'m [Vec<Arm>], mode: &'m Mode) -> Self {
+        // Along the rows of all arms, times their weights or what these change by.
+        let along = |vectors: &DMatrix<Complex<f64>>, row: &dyn Fn(&Arm) -> usize, which: usize| {
+            let of = |arms: &Vec<Arm>| -> Vec<Complex<f64>> {
+                let columns = vectors.column_iter().enumerate();
+                let at = columns.map(|(time, column)| {
+                    let terms = arms.iter().map(|arm| {
+                        let pairs = column.iter().zip(&reduced.rows[row(arm)]);
+                        pairs.map(|(x, d)| x * *d).sum::<Complex<f64>>() * arm.at_time(time)[which]
+                    });
+                    terms.sum()
+                });
+                at.collect()
             };
-            (0..means.len()).map(of).collect()
+            arms.iter().map(of).collect::<Vec<_>>()
         };
+        let (read, driven) = (&|arm: &Arm| arm.read, &|arm: &Arm| arm.driven);
+        let mut rates = along(&mode.rates, read, 0);
+        let turned = along(&mode.positions, read, 1);
+        for (rates, turned) in rates.iter_mut().zip(&turned) {
+            rates
+                .iter_mut()
+                .zip(turned)
+                .for_each(|(rate, by)| *rate += by);
+        }
         Self {
             mode,
             means,
-            gaps: along(&mode.positions, 0),
-            rates: along(&mode.rates, 0),
-            adjoint: along(&mode.adjoint, 1),
+            arms,
+            gaps: along(&mode.positions, read, 0),
+            rates,
+            adjoint: along(&mode.adjoint, driven, 0),
         }
     }
 
@@ -279,17 +296,27 @@ impl<'m> Along<'m> {
                 .collect();
             let products = adjoint.iter().zip(&force).map(|(y, p)| y * p);
             kept += products.sum::<Complex<f64>>() / TIMES as f64;
-            let times = |slopes: &[f64]| -> Vec<_> {
-                adjoint.iter().zip(slopes).map(|(y, k)| y * *k).collect()
-            };
-            let by_gap = waves.means(&times(&means.by_gap), 1);
-            let by_rate = waves.means(&times(&means.by_rate), 1);
-            let both = Waves::all().zip(by_gap.iter().zip(&by_rate));
-            let answer = both.map(|(k, (by_gap, by_rate))| {
-                by_gap + (self.mode.exponent + Complex::new(0.0, f64::from(k) * base)) * by_rate
-            });
-            answers.push(answer.collect::<Vec<_>>());
-            pushes.push(waves.means(&force, -1));
+            for arm in &self.arms[contact] {
+                let times = |of: &dyn Fn(usize, [f64; 2]) -> f64| -> Vec<_> {
+                    let adjoint = adjoint.iter().enumerate();
+                    let all = adjoint.map(|(time, y)| y * of(time, arm.at_time(time)));
+                    all.collect()
+                };
+                let by_gap = times(&|time, [weight, by_time]| {
+                    weight * means.by_gap[time] + by_time * means.by_rate[time]
+                });
+                let by_gap = waves.means(&by_gap, 1);
+                let by_rate = times(&|time, [weight, _]| weight * means.by_rate[time]);
+                let by_rate = waves.means(&by_rate, 1);
+                let both = Waves::all().zip(by_gap.iter().zip(&by_rate));
+                let answer = both.map(|(k, (by_gap, by_rate))| {
+                    by_gap + (self.mode.exponent + Complex::new(0.0, f64::from(k) * base)) * by_rate
+                });
+                answers.push((arm.read, answer.collect::<Vec<_>>()));
+                let force = force.iter().enumerate();
+                let force = force.map(|(time, p)| p * arm.at_time(time)[0]);
+                pushes.push((arm.driven, waves.means(&force.collect::<Vec<_>>(), -1)));
+            }
         }
         let mut found = Compliance {
             sizes: 0.0,
@@ -305,14 +332,13 @@ impl<'m> Along<'m> {
             } else {
                 1.0
             };
-            for (read, answer) in answers.iter().enumerate() {
-                for (pushed, push) in pushes.iter().enumerate() {
+            for (read, answer) in &answers {
+                for (pushed, push) in &pushes {
                     let product = answer[place] * push[place];
-                    let [read, pushed] = [2 * read, 2 * pushed + 1];
-                    let error = measured.compliance_error(read, pushed, frequency);
+                    let error = measured.compliance_error(*read, *pushed, frequency);
                     let size = times * error * product.norm();
                     found.sizes += size;
-                    match measured.measured_error(read, pushed, frequency) {
+                    match measured.measured_error(*read, *pushed, frequency) {
                         Some(error) => found.signed += product * error,
                         None => found.unsigned += size,
                     }

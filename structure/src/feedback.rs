@@ -2,7 +2,7 @@
 //!
 //! The gaps of the whole structure differ from those of the reduced one by what the error of the compliance makes of the forces, `e_c`, and
 //! by what the reduced structure answers to the forces `-p_c` that contacts change by for that. With the slopes `k_c` and `r_c` of their laws
-//! by gap and rate along the orbit, and the compliance `R`,
+//! by gap and rate along the orbit, and the compliance `R` along their directions, which may turn ([`crate::arms`]),
 //!
 //! ```text
 //! p_c = k_c (e_c - sum_b R_cb p_b) + r_c (e_c - sum_b R_cb p_b)'                                              (1)
@@ -23,6 +23,7 @@ use std::f64::consts::TAU;
 use hertzian::Complex;
 use hertzian::structure::DMatrix;
 
+use crate::arms::Arm;
 use crate::doubt::{self, COUPLED};
 use crate::gaps::{Slopes, TIMES};
 use crate::reduced::Reduced;
@@ -41,10 +42,10 @@ pub(crate) struct Read {
     pub(crate) derivatives: i32,
 }
 
-/// A harmonic of the amplitude `off` by which the gap of a contact is off.
+/// A harmonic of the amplitude `off` by which what is along a row is off. All contacts along it are off together.
 #[derive(Debug, Clone, Copy)]
 struct Source {
-    contact: usize,
+    row: usize,
     harmonic: usize,
     off: f64,
 }
@@ -64,7 +65,8 @@ impl Source {
 pub(crate) struct Feedback<'r> {
     reduced: &'r Reduced,
     base: f64,
-    /// Amplitudes of all vectors for a force at each contact, harmonic by harmonic.
+    channels: Vec<Channel>,
+    /// Amplitudes of all vectors for a force along each channel, harmonic by harmonic.
     answers: Vec<DMatrix<Complex<f64>>>,
     slopes: Vec<Slopes>,
     /// Whether the branch turns at the orbit.
@@ -73,6 +75,17 @@ pub(crate) struct Feedback<'r> {
     unknowns: Vec<(usize, usize)>,
     /// The matrix of (1).
     matrix: Option<DMatrix<f64>>,
+}
+
+/// An arm of a contact.
+#[derive(Debug)]
+struct Channel {
+    contact: usize,
+    arm: Arm,
+    /// The first row like that along which it is read.
+    row: usize,
+    /// Its weight and the rate of that at all times.
+    weights: Vec<[f64; 2]>,
 }
 
 /// Inverse iterations for the direction in which a matrix is nearest to a singular one.
@@ -93,6 +106,64 @@ fn along_branch(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     Some(along)
 }
 
+/// By how much something that is read changes at most.
+#[derive(Debug, Clone)]
+pub(crate) struct Changed {
+    /// At any time.
+    pub(crate) largest: f64,
+    /// The same without the mean.
+    pub(crate) swing: f64,
+    /// In the mean, and in the amplitude of each harmonic.
+    pub(crate) harmonics: Vec<f64>,
+}
+
+impl Changed {
+    /// All by as much.
+    fn by(much: f64) -> Self {
+        Self {
+            largest: much,
+            swing: much,
+            harmonics: vec![much; TIMES / 2],
+        }
+    }
+}
+
+/// The largest value of what all sources come to, of which two columns are cosine and sine, with or without its mean.
+fn largest(changes: &DMatrix<f64>, about_mean: bool) -> f64 {
+    let of = |source: usize| {
+        let means = [0, 1].map(|part| {
+            let mean = changes.column(2 * source + part).sum() / TIMES as f64;
+            if about_mean { mean } else { 0.0 }
+        });
+        let at = |time: usize, part: usize| changes[(time, 2 * source + part)] - means[part];
+        let both = (0..TIMES).map(|time| at(time, 0).hypot(at(time, 1)));
+        both.fold(0.0, f64::max)
+    };
+    (0..changes.ncols() / 2).map(of).sum()
+}
+
+/// Amplitudes of harmonics of what all sources come to, of which two columns are cosine and sine; their phases are not known.
+fn harmonics(changes: &DMatrix<f64>) -> Vec<f64> {
+    let circle = (0..TIMES).map(|i| (TAU * i as f64 / TIMES as f64).sin_cos());
+    let circle: Vec<(f64, f64)> = circle.collect();
+    let amplitude = |column: usize, harmonic: usize| {
+        let mut sum = Complex::new(0.0, 0.0);
+        for time in 0..TIMES {
+            let (sine, cosine) = circle[(harmonic * time) % TIMES];
+            sum += Complex::new(cosine, sine) * changes[(time, column)];
+        }
+        let times = if harmonic == 0 { 1.0 } else { 2.0 };
+        times * sum.norm() / TIMES as f64
+    };
+    let of = |harmonic: usize| {
+        let sources = 0..changes.ncols() / 2;
+        let both =
+            sources.map(|i| amplitude(2 * i, harmonic).hypot(amplitude(2 * i + 1, harmonic)));
+        both.sum()
+    };
+    (0..TIMES / 2).map(of).collect()
+}
+
 /// Values of a periodic function at all times, by its harmonics.
 fn over_period(harmonics: &[Complex<f64>]) -> Vec<f64> {
     let at = |time: usize| {
@@ -106,18 +177,18 @@ fn over_period(harmonics: &[Complex<f64>]) -> Vec<f64> {
     (0..TIMES).map(at).collect()
 }
 
-/// Amplitudes of all vectors for a force at each contact.
+/// Amplitudes of all vectors for a force along each channel.
 fn answer(
     reduced: &Reduced,
     damping: &DMatrix<f64>,
-    contacts: usize,
+    channels: &[Channel],
     harmonic: usize,
     base: f64,
 ) -> DMatrix<Complex<f64>> {
     let m = reduced.vectors();
     let frequency = (harmonic as f64 * base).max(SLOW * reduced.to);
-    let push = DMatrix::from_fn(m, contacts, |i, j| {
-        Complex::new(reduced.rows[2 * j + 1][i], 0.0)
+    let push = DMatrix::from_fn(m, channels.len(), |i, j| {
+        Complex::new(reduced.rows[channels[j].arm.driven][i], 0.0)
     });
     let apart = |i: usize, j: usize| damping[(i, j)] == 0.0 && damping[(j, i)] == 0.0;
     let is_diagonal = (0..m).all(|i| (0..i).all(|j| apart(i, j)));
@@ -131,22 +202,30 @@ fn answer(
         let stiffness = reduced.squares[i] - frequency * frequency;
         Complex::new(stiffness, frequency * damping[(i, i)])
     };
-    DMatrix::from_fn(m, contacts, |i, j| push[(i, j)] / own(i))
+    DMatrix::from_fn(m, channels.len(), |i, j| push[(i, j)] / own(i))
 }
 
 impl<'r> Feedback<'r> {
-    /// Of an orbit of this base frequency, where matrices that turn have these speeds.
+    /// Of an orbit of this base frequency, where the vectors have this damping.
     pub(crate) fn of(
         reduced: &'r Reduced,
-        speeds: &[f64],
+        damping: &DMatrix<f64>,
         base: f64,
         slopes: Vec<Slopes>,
+        arms: &[Vec<Arm>],
         at_fold: bool,
     ) -> Self {
-        let damping = doubt::damping(reduced, speeds);
-        let contacts = slopes.len();
+        let channels = arms.iter().enumerate().flat_map(|(contact, arms)| {
+            arms.iter().map(move |arm| Channel {
+                contact,
+                arm: *arm,
+                row: reduced.first_like(arm.read),
+                weights: (0..TIMES).map(|time| arm.at_time(time)).collect(),
+            })
+        });
+        let channels: Vec<Channel> = channels.collect();
         let answers =
-            (0..TIMES / 2).map(|harmonic| answer(reduced, &damping, contacts, harmonic, base));
+            (0..TIMES / 2).map(|harmonic| answer(reduced, damping, &channels, harmonic, base));
         let acts = |of: &Slopes, time: usize| of.by_gap[time] != 0.0 || of.by_rate[time] != 0.0;
         let all = slopes.iter().enumerate();
         let all = all.flat_map(|(contact, of)| {
@@ -160,6 +239,7 @@ impl<'r> Feedback<'r> {
             reduced,
             base,
             answers: answers.collect(),
+            channels,
             slopes,
             at_fold,
             unknowns,
@@ -169,15 +249,15 @@ impl<'r> Feedback<'r> {
         feedback
     }
 
-    /// Harmonics of the answer to a force along the direction of a contact, one for each thing that is read.
-    fn answers(&self, read: &[Read], contact: usize) -> Vec<Vec<Complex<f64>>> {
+    /// Harmonics of the answer to a force along a channel, one for each thing that is read.
+    fn answers(&self, read: &[Read], channel: usize) -> Vec<Vec<Complex<f64>>> {
         let of = |read: &Read| {
             let row = &self.reduced.rows[read.row];
             let harmonics = self.answers.iter().enumerate();
             let harmonics = harmonics.map(|(harmonic, answer)| {
                 let rate = Complex::new(0.0, harmonic as f64 * self.base);
                 let terms = row.iter().enumerate();
-                let terms = terms.map(|(i, d)| answer[(i, contact)] * *d);
+                let terms = terms.map(|(i, d)| answer[(i, channel)] * *d);
                 terms.sum::<Complex<f64>>() * rate.powi(read.derivatives)
             });
             harmonics.collect()
@@ -191,26 +271,54 @@ impl<'r> Feedback<'r> {
         if n == 0 {
             return None;
         }
-        let contacts = 0..self.slopes.len();
         let mut matrix = DMatrix::identity(n, n);
-        for pushed in contacts.clone() {
-            let read = contacts.clone().flat_map(|contact| {
-                [0, 1].map(|derivatives| Read {
-                    row: 2 * contact,
-                    derivatives,
-                })
-            });
-            let kernels = self.kernels(&read.collect::<Vec<_>>(), pushed, each);
-            for (column, &(_, then)) in self.of_contact(pushed) {
+        let read = self.along_channels();
+        for (pushed, push) in self.channels.iter().enumerate() {
+            let kernels = self.kernels(&read, pushed, each);
+            for (column, &(_, then)) in self.of_contact(push.contact) {
+                let share = push.weights[then][0];
                 for (row, &(contact, time)) in self.unknowns.iter().enumerate() {
                     let since = (TIMES + time - then) % TIMES;
+                    let at = |of: &Vec<f64>| of[since];
+                    let [gap, rate] = self.of_gap(contact, time, &kernels, at);
                     let slopes = &self.slopes[contact];
-                    matrix[(row, column)] += slopes.by_gap[time] * kernels[2 * contact][since]
-                        + slopes.by_rate[time] * kernels[2 * contact + 1][since];
+                    matrix[(row, column)] +=
+                        share * (slopes.by_gap[time] * gap + slopes.by_rate[time] * rate);
                 }
             }
         }
         Some(matrix)
+    }
+
+    /// What is along each channel, and its rate.
+    fn along_channels(&self) -> Vec<Read> {
+        let both = self.channels.iter().flat_map(|channel| {
+            [0, 1].map(|derivatives| Read {
+                row: channel.arm.read,
+                derivatives,
+            })
+        });
+        both.collect()
+    }
+
+    /// Gap and rate of a contact at a time, of what was read [along all channels](Self::along_channels).
+    fn of_gap<T>(
+        &self,
+        contact: usize,
+        time: usize,
+        read: &[T],
+        at: impl Fn(&T) -> f64,
+    ) -> [f64; 2] {
+        let own = self.channels.iter().zip(read.chunks_exact(2));
+        let own = own.filter(|(channel, _)| channel.contact == contact);
+        own.fold([0.0; 2], |[gap, rate], (channel, read)| {
+            let [weight, by_time] = channel.weights[time];
+            let [along, faster] = [at(&read[0]), at(&read[1])];
+            [
+                gap + weight * along,
+                rate + weight * faster + by_time * along,
+            ]
+        })
     }
 
     fn of_contact(&self, wanted: usize) -> impl Iterator<Item = (usize, &(usize, usize))> {
@@ -229,52 +337,40 @@ impl<'r> Feedback<'r> {
         answers.iter().map(kernel).collect()
     }
 
-    /// The largest change of everything that is read, where gaps are off by these amplitudes of each harmonic; not a number where forces are
+    /// The largest changes of everything that is read, where rows are off by these amplitudes of each harmonic; not numbers where forces are
     /// not determined.
-    pub(crate) fn changes(&self, read: &[Read], off: &[Vec<f64>]) -> Vec<f64> {
+    pub(crate) fn changes(&self, read: &[Read], off: &[(usize, Vec<f64>)]) -> Vec<Changed> {
         if self.matrix.is_none() {
-            return vec![0.0; read.len()];
+            return vec![Changed::by(0.0); read.len()];
         }
         let Some(changes) = self.answered(read, &Self::sources(off)) else {
-            return vec![f64::NAN; read.len()];
+            return vec![Changed::by(f64::NAN); read.len()];
         };
-        let largest = |changes: &DMatrix<f64>| {
-            let of = |source: usize| {
-                let both = (0..TIMES)
-                    .map(|time| changes[(time, 2 * source)].hypot(changes[(time, 2 * source + 1)]));
-                both.fold(0.0, f64::max)
-            };
-            (0..changes.ncols() / 2).map(of).sum()
-        };
-        changes.iter().map(largest).collect()
+        let changes = changes.iter().map(|changes| Changed {
+            largest: largest(changes, false),
+            swing: largest(changes, true),
+            harmonics: harmonics(changes),
+        });
+        changes.collect()
     }
 
     /// By how much gaps, and then rates, of all contacts are off over time: two columns for cosine and sine of each harmonic by which one of them
     /// is off without what contacts make of that. None where forces are not determined.
-    pub(crate) fn gaps_off(&self, off: &[Vec<f64>]) -> Option<[Vec<DMatrix<f64>>; 2]> {
+    pub(crate) fn gaps_off(&self, off: &[(usize, Vec<f64>)]) -> Option<[Vec<DMatrix<f64>>; 2]> {
         let sources = Self::sources(off);
-        let contacts = self.slopes.len();
-        let of = |derivatives: i32| {
-            let read = (0..contacts).map(|contact| Read {
-                row: 2 * contact,
-                derivatives,
-            });
-            let answered = self.answered(&read.collect::<Vec<_>>(), &sources)?;
-            let own = |contact: usize, time: usize, column: usize| {
-                let source = &sources[column / 2];
-                let [gap, rate] = source.at(time, column % 2, self.base);
-                let by = if derivatives == 0 { gap } else { rate };
-                if source.contact == contact { by } else { 0.0 }
-            };
-            let answered = answered.into_iter().enumerate();
-            let all = answered.map(|(contact, answered)| {
+        let answered = self.answered(&self.along_channels(), &sources)?;
+        let of = |derivatives: usize| {
+            let all = (0..self.slopes.len()).map(|contact| {
                 DMatrix::from_fn(TIMES, 2 * sources.len(), |time, column| {
-                    own(contact, time, column) - answered[(time, column)]
+                    let source = sources[column / 2];
+                    let own = self.gap_of(source, contact, time, column % 2)[derivatives];
+                    let at = |of: &DMatrix<f64>| of[(time, column)];
+                    own - self.of_gap(contact, time, &answered, at)[derivatives]
                 })
             });
-            Some(all.collect())
+            all.collect()
         };
-        Some([of(0)?, of(1)?])
+        Some([of(0), of(1)])
     }
 
     /// What is read of the reduced structure for the forces that contacts change by, over time, a column for cosine and sine of each source.
@@ -292,12 +388,13 @@ impl<'r> Feedback<'r> {
             forces -= along * part;
         }
         let mut whole = vec![DMatrix::<f64>::zeros(TIMES, n); read.len()];
-        for pushed in 0..self.slopes.len() {
+        for (pushed, push) in self.channels.iter().enumerate() {
             let kernels = self.kernels(read, pushed, every);
             for (whole, kernel) in whole.iter_mut().zip(&kernels) {
-                for (column, &(_, then)) in self.of_contact(pushed) {
+                for (column, &(_, then)) in self.of_contact(push.contact) {
+                    let share = push.weights[then][0];
                     for time in 0..TIMES {
-                        whole[(time, column)] = kernel[(TIMES + time - then) % TIMES];
+                        whole[(time, column)] += share * kernel[(TIMES + time - then) % TIMES];
                     }
                 }
             }
@@ -305,15 +402,29 @@ impl<'r> Feedback<'r> {
         Some(whole.iter().map(|whole| whole * &forces).collect())
     }
 
-    /// Every harmonic that a gap is off by, where it matters.
-    fn sources(off: &[Vec<f64>]) -> Vec<Source> {
-        let largest = off.iter().flatten().fold(0.0, |most: f64, x| most.max(*x));
-        let all = off.iter().enumerate();
-        let all = all.flat_map(|(contact, off)| {
+    /// What a source makes of the gap of a contact at a time, and of its rate: of its cosine, or sine.
+    fn gap_of(&self, source: Source, contact: usize, time: usize, part: usize) -> [f64; 2] {
+        let own = self.channels.iter();
+        let own = own.filter(|of| of.contact == contact && of.row == source.row);
+        let [along, faster] = source.at(time, part, self.base);
+        own.fold([0.0; 2], |[gap, rate], channel| {
+            let [weight, by_time] = channel.weights[time];
+            [
+                gap + weight * along,
+                rate + weight * faster + by_time * along,
+            ]
+        })
+    }
+
+    /// Every harmonic that a row is off by, where it matters.
+    fn sources(off: &[(usize, Vec<f64>)]) -> Vec<Source> {
+        let all = off.iter().flat_map(|(_, off)| off);
+        let largest = all.fold(0.0, |most: f64, x| most.max(*x));
+        let all = off.iter().flat_map(|(row, off)| {
             let harmonics = off.iter().enumerate();
             let matter = harmonics.filter(|(_, off)| **off > NOTHING * largest);
             matter.map(move |(harmonic, off)| Source {
-                contact,
+                row: *row,
                 harmonic,
                 off: *off,
             })
@@ -325,10 +436,10 @@ impl<'r> Feedback<'r> {
     fn driven(&self, sources: &[Source]) -> DMatrix<f64> {
         let mut forces = DMatrix::zeros(self.unknowns.len(), 2 * sources.len());
         for (index, source) in sources.iter().enumerate() {
-            for (row, &(contact, time)) in self.of_contact(source.contact) {
+            for (row, &(contact, time)) in self.unknowns.iter().enumerate() {
                 let slopes = &self.slopes[contact];
                 for part in 0..2 {
-                    let [gap, rate] = source.at(time, part, self.base);
+                    let [gap, rate] = self.gap_of(*source, contact, time, part);
                     forces[(row, 2 * index + part)] =
                         slopes.by_gap[time] * gap + slopes.by_rate[time] * rate;
                 }

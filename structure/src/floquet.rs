@@ -20,9 +20,10 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::Complex;
 use hertzian::structure::DMatrix;
+use hertzian::{Cancel, Complex};
 
+use crate::arms::Arm;
 use crate::gaps::{Slopes, TIMES};
 use crate::reduced::Reduced;
 
@@ -77,12 +78,14 @@ pub(crate) struct Propagation {
 }
 
 impl Propagation {
-    /// Of (1); none where there are too many vectors, or what a contact is has no bound.
+    /// Of (1); none where there are too many vectors, what a contact is has no bound, or it is cancelled.
     pub(crate) fn of(
         reduced: &Reduced,
         damping: &DMatrix<f64>,
         contacts: &[Slopes],
+        arms: &[Vec<Arm>],
         base: f64,
+        cancel: &Cancel,
     ) -> Option<Self> {
         let m = reduced.vectors();
         if m > MOST {
@@ -96,15 +99,24 @@ impl Propagation {
             .collect();
         let mut halves: Vec<DMatrix<f64>> = Vec::with_capacity(TIMES);
         let mut whole = DMatrix::identity(2 * m, 2 * m);
+        let turns = arms.iter().any(|arms| arms.len() > 1);
         let mut before: Option<Vec<[f64; 2]>> = None;
         for time in 0..TIMES {
+            if cancel.is_cancelled() {
+                return None;
+            }
             let now = contacts.iter();
             let now: Vec<_> = now.map(|of| [of.by_gap[time], of.by_rate[time]]).collect();
-            let same = halves.last().filter(|_| before.as_ref() == Some(&now));
+            let is_same = before.as_ref() == Some(&now)
+                && (!turns || now.iter().flatten().all(|slope| *slope == 0.0));
+            let same = halves.last().filter(|_| is_same);
             let half = if let Some(same) = same {
                 same.clone()
             } else {
-                let slope = generator(reduced, damping, &units, &now);
+                let mut slope = free(reduced, damping, &units);
+                for (arms, slopes) in arms.iter().zip(&now) {
+                    push(&mut slope, reduced, &units, arms, *slopes, time);
+                }
                 if slope.iter().any(|x| !x.is_finite()) {
                     return None;
                 }
@@ -197,13 +209,8 @@ fn real_and_imaginary(column: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
     })
 }
 
-/// The matrix of (1) for positions in their units and rates.
-fn generator(
-    reduced: &Reduced,
-    damping: &DMatrix<f64>,
-    units: &[f64],
-    contacts: &[[f64; 2]],
-) -> DMatrix<f64> {
+/// The matrix of (1) without contacts, for positions in their units and rates.
+fn free(reduced: &Reduced, damping: &DMatrix<f64>, units: &[f64]) -> DMatrix<f64> {
     let m = units.len();
     let mut slope = DMatrix::zeros(2 * m, 2 * m);
     for (i, unit) in units.iter().enumerate() {
@@ -213,16 +220,38 @@ fn generator(
             slope[(m + i, m + j)] = -damping[(i, j)];
         }
     }
-    for (contact, [k, r]) in contacts.iter().enumerate() {
-        let (gap, force) = (&reduced.rows[2 * contact], &reduced.rows[2 * contact + 1]);
-        for (i, b) in force.iter().enumerate() {
-            for (j, d) in gap.iter().enumerate() {
-                slope[(m + i, j)] -= b * k * d / units[j];
-                slope[(m + i, m + j)] -= b * r * d;
-            }
+    slope
+}
+
+/// Adds a contact with its slopes by gap and rate at a time.
+fn push(
+    slope: &mut DMatrix<f64>,
+    reduced: &Reduced,
+    units: &[f64],
+    arms: &[Arm],
+    [k, r]: [f64; 2],
+    time: usize,
+) {
+    let m = units.len();
+    let sum = |row: &dyn Fn(&Arm) -> usize, which: usize| -> Vec<f64> {
+        let mut sum = vec![0.0; m];
+        for arm in arms {
+            let weight = arm.at_time(time)[which];
+            let along = &reduced.rows[row(arm)];
+            sum.iter_mut()
+                .zip(along)
+                .for_each(|(sum, x)| *sum += weight * x);
+        }
+        sum
+    };
+    let (read, driven) = (&|arm: &Arm| arm.read, &|arm: &Arm| arm.driven);
+    let (gap, turned, force) = (sum(read, 0), sum(read, 1), sum(driven, 0));
+    for (i, b) in force.iter().enumerate() {
+        for (j, (d, by_time)) in gap.iter().zip(&turned).enumerate() {
+            slope[(m + i, j)] -= b * (k * d + r * by_time) / units[j];
+            slope[(m + i, m + j)] -= b * r * d;
         }
     }
-    slope
 }
 
 /// The direction that a matrix nearly takes to nothing.

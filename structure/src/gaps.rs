@@ -17,6 +17,9 @@ use std::f64::consts::TAU;
 use hertzian::Orbit;
 use hertzian::law::{Derivatives, Law, On};
 
+use crate::arms::Arm;
+use crate::reduced::Reduced;
+
 /// Times of the period.
 pub(crate) const TIMES: usize = 128;
 /// Parts of each of the times between, by which (1) is taken.
@@ -45,6 +48,14 @@ pub(crate) struct Gap<'s> {
     step: f64,
 }
 
+/// Adds a multiple of a series to one that may be shorter.
+pub(crate) fn add(sum: &mut Vec<f64>, factor: f64, series: &[f64]) {
+    sum.resize(sum.len().max(series.len()), 0.0);
+    for (sum, x) in sum.iter_mut().zip(series) {
+        *sum += factor * x;
+    }
+}
+
 /// A law at points.
 struct Evaluated {
     force: Vec<f64>,
@@ -70,21 +81,26 @@ fn evaluated(law: &dyn Law, arguments: &[f64], [gaps, rates]: [&[f64]; 2]) -> Ev
 }
 
 impl<'s> Gap<'s> {
-    /// Of a law with its arguments, along a direction by the vectors that coordinates of an orbit with a series are of, less an offset.
+    /// Of a law with its arguments, along the arms of a contact by the vectors that coordinates of an orbit with a series are of, less an offset.
     pub(crate) fn of(
         law: &'s dyn Law,
         arguments: Vec<f64>,
-        row: &[f64],
+        reduced: &Reduced,
+        arms: &[Arm],
         offset: f64,
         orbit: &Orbit,
     ) -> Self {
         let mut series: Vec<f64> = Vec::new();
-        for (coordinate, factor) in row.iter().enumerate() {
-            let of = orbit.series(coordinate).unwrap_or_default();
-            series.resize(series.len().max(of.len()), 0.0);
-            for (sum, x) in series.iter_mut().zip(of) {
-                *sum += factor * x;
+        for arm in arms {
+            let mut along: Vec<f64> = Vec::new();
+            for (coordinate, factor) in reduced.rows[arm.read].iter().enumerate() {
+                add(
+                    &mut along,
+                    *factor,
+                    orbit.series(coordinate).unwrap_or_default(),
+                );
             }
+            add(&mut series, 1.0, &arm.times(&along));
         }
         let mean = series.first().map_or(-offset, |mean| mean - offset);
         let mut motion = [vec![mean; POINTS], vec![0.0; POINTS]];

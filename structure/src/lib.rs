@@ -43,7 +43,9 @@ pub mod market;
 pub mod npy;
 
 mod accuracy;
+mod arms;
 mod at_orbit;
+mod backbone;
 mod description;
 mod doubt;
 mod error;
@@ -58,7 +60,7 @@ mod multipliers;
 mod reduced;
 mod reduction;
 
-pub use accuracy::OutputError;
+pub use accuracy::{Effects, OutputError};
 pub use description::{
     Damping, Direction, Gyroscopic, Load, LoadKind, OutputKind, Ratios, SparseContact,
     SparseStructure,

@@ -11,7 +11,7 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::{Branch, Complex, Point, Stability, Verdict};
+use hertzian::{Branch, Cancel, Complex, Point, Stability, Verdict};
 
 use crate::at_orbit::AtOrbit;
 use crate::description::{Damping, SparseStructure};
@@ -95,12 +95,23 @@ impl Reduced {
         branch: &Branch,
         point: &Point,
     ) -> Result<ReducedStability, ReducedError> {
-        let at = AtOrbit::of(self, structure, branch, point)?;
+        self.effects(structure, branch).stability(point)
+    }
+
+    /// The same, unless it is cancelled.
+    pub(crate) fn stability_until(
+        &self,
+        structure: &SparseStructure,
+        branch: &Branch,
+        point: &Point,
+        cancel: &Cancel,
+    ) -> Result<ReducedStability, ReducedError> {
+        let at = AtOrbit::of(self, structure, branch, point, cancel)?;
         let multipliers = &point.stability.multipliers;
-        let modes = self.floquet_modes(&at, point);
+        let modes = self.floquet_modes(&at, point, cancel);
         let near = modes.iter().flatten();
         let near = near.flat_map(|mode| exponent::frequencies(mode, at.base));
-        let measured = at.measured.measured(structure, near);
+        let measured = at.measured.measured(structure, near, cancel)?;
         let contacts = Contacts::of(self, &at);
         let period = TAU / at.base;
         // Where nothing is left out vectors besides modes are modes too.
@@ -111,6 +122,9 @@ impl Reduced {
         };
         let mut whole: Vec<Known> = Vec::with_capacity(modes.len());
         for (index, mode) in modes.iter().enumerate() {
+            if cancel.is_cancelled() {
+                return Err(ReducedError::Cancelled);
+            }
             whole.push(match mode {
                 Some(mode) => {
                     let change = contacts.change(self, &at, &measured, mode);
@@ -135,8 +149,8 @@ impl Reduced {
         })
     }
 
-    /// Modes of the multipliers that matter, of a pair that of the first one; none where it is not resolved.
-    fn floquet_modes(&self, at: &AtOrbit<'_>, point: &Point) -> Vec<Option<Mode>> {
+    /// Modes of the multipliers that matter, of a pair that of the first one; none where it is not resolved, or when it is cancelled.
+    fn floquet_modes(&self, at: &AtOrbit<'_>, point: &Point, cancel: &Cancel) -> Vec<Option<Mode>> {
         let multipliers = &point.stability.multipliers;
         let many = multipliers.iter().take_while(|mu| mu.norm() >= LEAST);
         let count = many.count().max(1).min(multipliers.len());
@@ -145,10 +159,10 @@ impl Reduced {
         // A period of many periods of the excitation has too few times in each.
         let is_resolved = point.omega() <= MOST_PERIODS * at.base;
         let propagation = is_resolved
-            .then(|| Propagation::of(self, &damping, &means, at.base))
+            .then(|| Propagation::of(self, &damping, &means, &at.arms, at.base, cancel))
             .flatten();
         let of = |index: usize| {
-            if is_second(multipliers, index) {
+            if is_second(multipliers, index) || cancel.is_cancelled() {
                 return None;
             }
             let mode = propagation.as_ref()?.mode(multipliers[index])?;

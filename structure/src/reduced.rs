@@ -19,7 +19,8 @@ const SAME: f64 = 1e-9;
 
 /// A structure by few vectors: modes, and static responses besides them.
 ///
-/// Its directions are in the order: of each contact that of its gap and that of its force, then loads, then outputs.
+/// Its directions are in the order: of each contact that of its gap and that of its force, or both between which they turn, then loads, then
+/// outputs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reduced {
     pub(crate) version: u32,
@@ -138,10 +139,13 @@ pub enum ReducedError {
     /// An orbit cannot be read.
     #[error("{0}")]
     Orbit(#[from] Error),
+    /// It was stopped.
+    #[error("what the reduction changes was not computed: it was cancelled")]
+    Cancelled,
 }
 
 impl Reduced {
-    pub(crate) const VERSION: u32 = 4;
+    pub(crate) const VERSION: u32 = 5;
 
     /// How many of its vectors are modes of the structure.
     pub fn modes(&self) -> usize {
@@ -187,6 +191,13 @@ impl Reduced {
         terms
             .map(|((d, b), square)| d * b / (square - frequency * frequency))
             .sum()
+    }
+
+    /// The first row that is equal to one: several contacts may be along one direction.
+    pub(crate) fn first_like(&self, row: usize) -> usize {
+        let own = &self.rows[row];
+        let first = self.rows.iter().position(|other| other == own);
+        first.unwrap_or(row)
     }
 
     /// How many directions are driven: those of contacts and of loads.
@@ -275,20 +286,23 @@ impl Reduced {
         forces.iter().map(of).sum()
     }
 
-    /// The same of a displacement, harmonic by harmonic, which are as many as [`TIMES`] tell.
+    /// The same harmonic by harmonic, which are as many as [`TIMES`] tell.
     pub(crate) fn harmonics_off(
         &self,
         read: usize,
+        kind: OutputKind,
         omega: f64,
         forces: &[(usize, Vec<f64>)],
         doubt: &Doubt,
     ) -> Vec<f64> {
+        let looked_at = self.checked.last().map_or(0.0, |c| c.frequency);
         let at = |harmonic: usize| {
             let frequency = harmonic as f64 * omega;
             let of = |(driven, amplitudes): &(usize, Vec<f64>)| {
                 let compliance = self.compliance_error(read, *driven, frequency)
                     + doubt.of(self, [read, *driven], harmonic, omega);
-                compliance * amplitude_of(amplitudes, harmonic)
+                let times = frequency.min(looked_at).powi(kind.derivatives());
+                compliance * times * amplitude_of(amplitudes, harmonic)
             };
             forces.iter().map(of).sum()
         };
@@ -317,15 +331,16 @@ impl Reduced {
         let mut rows = self.rows.iter();
         let mut next = || rows.next().cloned().unwrap_or_default();
         for contact in &of.contacts {
-            let (gap, force) = (next(), next());
-            builder = builder.contact(
-                Contact::of(contact.law.clone())
-                    .arguments(contact.arguments.iter().cloned())
-                    .direction(gap)
-                    .force_direction(force)
-                    .offset(contact.offset.clone())
-                    .unit(of.force_unit.clone()),
-            );
+            let (gap, second) = (next(), next());
+            let own = Contact::of(contact.law.clone())
+                .arguments(contact.arguments.iter().cloned())
+                .direction(gap)
+                .offset(contact.offset.clone())
+                .unit(of.force_unit.clone());
+            builder = builder.contact(match contact.turning {
+                Some((_, turn)) => own.turning(second, turn),
+                None => own.force_direction(second),
+            });
         }
         for load in &of.loads {
             let row = next();
@@ -477,8 +492,14 @@ impl Reduced {
             let by_masses = matches!(load.kind, LoadKind::Base | LoadKind::Acceleration);
             take(u64::from(by_masses));
         }
+        for contact in &structure.contacts {
+            take(u64::from(contact.turning.is_some()));
+        }
         let contacts = structure.contacts.iter();
-        let contacts = contacts.flat_map(|c| [Some(&c.gap), c.force.as_ref()]);
+        let contacts = contacts.flat_map(|c| {
+            let across = c.turning.as_ref().map(|(across, _)| across);
+            [Some(&c.gap), across.or(c.force.as_ref())]
+        });
         let loads = structure.loads.iter().map(|load| Some(&load.direction));
         let outputs = structure.outputs.iter().map(|o| Some(&o.direction));
         for direction in contacts.chain(loads).chain(outputs) {

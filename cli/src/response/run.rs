@@ -157,9 +157,9 @@ pub fn run(
     let mut backbone = Backbone::default();
     if options.backbone && !cancel.is_cancelled() {
         let missing;
-        (backbone, missing) = backbone::of(options, &*model, &branches[0], cancel);
-        let drawn = |chart| backbone.references().fold(chart, Chart::reference);
-        charts = charts.into_iter().map(drawn).collect();
+        (backbone, missing) =
+            backbone::of(options, &*model, reduced.as_ref(), &branches[0], cancel);
+        charts = with_backbone(&*model, &backbone, charts);
         warnings.extend(missing);
     }
     let mut further = covered::summary(&diagram, options.varied());
@@ -182,7 +182,7 @@ pub fn run(
         warnings.extend(completed::all(&mut branches, cancel, see));
     }
     let reduction = match &reduced {
-        Some(reduced) => Some(reduced.of(&branches)?),
+        Some(reduced) => Some(reduced.of(options, &branches, &backbone, cancel)?),
         None => None,
     };
     let record = Record {
@@ -208,6 +208,17 @@ pub fn run(
             && all_panels,
         warnings,
     })
+}
+
+/// The charts with the backbone, by the first output where there is one, as they are.
+fn with_backbone(model: &dyn System, backbone: &Backbone, charts: Vec<Chart>) -> Vec<Chart> {
+    let first = model.facts().outputs.first();
+    let shown: Option<Wanted> = first.and_then(|output| output.name.parse().ok());
+    let drawn = charts.into_iter().map(|chart| {
+        let lines = backbone.references(shown.as_ref()).into_iter();
+        lines.fold(chart, Chart::reference)
+    });
+    drawn.collect()
 }
 
 /// The charts that were asked for, and why one cannot be drawn: what was computed is not lost for that.
@@ -321,7 +332,8 @@ fn check(options: &Options) -> Result<(), Failure> {
     if let Some(&value) = options.at.iter().find(|value| !value.is_finite()) {
         return Err(Failure::At(value));
     }
-    if options.backbone && (options.model.file.is_some() || !options.over_frequency()) {
+    let is_declared = options.structure.file.is_none() && options.model.file.is_some();
+    if options.backbone && (is_declared || !options.over_frequency()) {
         return Err(Failure::Backbone);
     }
     if options.over_frequency() && options.model.omega.is_some() {

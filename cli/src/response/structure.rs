@@ -20,7 +20,7 @@ pub struct StructureOptions {
         id = "structure",
         long = "structure",
         value_name = "FILE",
-        conflicts_with_all = ["file", "one_sided", "continuous", "alpha", "zeta", "load", "drive", "backbone", "search"]
+        conflicts_with_all = ["file", "one_sided", "continuous", "alpha", "zeta", "load", "drive", "search"]
     )]
     pub file: Option<PathBuf>,
 
@@ -52,8 +52,29 @@ pub struct Reduction {
     pub compliance: Vec<[f64; 2]>,
     /// Of each output the largest change of a peak-to-peak along the branches, as a part of it.
     pub outputs: Vec<(String, f64)>,
+    /// Of what `--plot` names of outputs the largest change along the branches, in its unit.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub measured: Vec<(String, f64)>,
     /// Verdicts on the whole structure.
     pub verdicts: Verdicts,
+    /// The same of backbones.
+    #[serde(skip_serializing_if = "OfBackbone::is_empty")]
+    pub backbone: OfBackbone,
+}
+
+/// What the reduction changes of backbones.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct OfBackbone {
+    /// The frequency of each orbit of free oscillation, as a part of it, at equal action.
+    pub frequencies: Vec<f64>,
+    /// Of each output the largest change of a peak-to-peak along phase resonance, as a part of it.
+    pub outputs: Vec<(String, f64)>,
+}
+
+impl OfBackbone {
+    fn is_empty(&self) -> bool {
+        self.frequencies.is_empty() && self.outputs.is_empty()
+    }
 }
 
 /// Orbits along branches by what is known of the stability of those of the whole structure.
@@ -112,7 +133,8 @@ pub fn completed(options: &Options, model: &dyn System) -> Options {
 /// Without the feature `sparse` there are no structures.
 #[cfg(not(feature = "sparse"))]
 mod sparse {
-    use super::{Failure, Options, Reduced, Reduction, Verdicts};
+    use super::{Failure, OfBackbone, Options, Reduced, Reduction, Verdicts};
+    use crate::response::backbone::Backbone;
     use hertzian::{Branch, Cancel, System};
 
     /// No structure.
@@ -130,7 +152,13 @@ mod sparse {
         ///
         /// # Errors
         /// Never.
-        pub fn of(&self, _: &[Branch]) -> Result<Reduction, Failure> {
+        pub fn of(
+            &self,
+            _: &Options,
+            _: &[Branch],
+            _: &Backbone,
+            _: &Cancel,
+        ) -> Result<Reduction, Failure> {
             Ok(Reduction {
                 coordinates: 0,
                 modes: 0,
@@ -138,8 +166,15 @@ mod sparse {
                 frequencies: Vec::new(),
                 compliance: Vec::new(),
                 outputs: Vec::new(),
+                measured: Vec::new(),
                 verdicts: Verdicts::default(),
+                backbone: OfBackbone::default(),
             })
+        }
+
+        /// None: there is no such structure.
+        pub fn drive(&self) -> Option<&str> {
+            None
         }
     }
 }
@@ -149,7 +184,8 @@ mod sparse {
     use hertzian::{Branch, Cancel, System, Verdict};
     use hertzian_structure::{self as structures, SparseStructure, file};
 
-    use super::{Failure, Options, Reduced, Reduction, Verdicts};
+    use super::{Failure, OfBackbone, Options, Reduced, Reduction, Verdicts};
+    use crate::response::backbone::Backbone;
 
     /// Orbits of a branch at which the error of the reduction is looked at, besides its events.
     const LOOKED_AT: usize = 16;
@@ -221,30 +257,62 @@ mod sparse {
         }
     }
 
+    /// What was found before it was cancelled is kept.
+    fn kept<T>(found: Result<T, structures::ReducedError>) -> Result<Option<T>, Failure> {
+        match found {
+            Err(structures::ReducedError::Cancelled) => Ok(None),
+            other => other.map(Some).map_err(unreadable),
+        }
+    }
+
+    /// Largest errors of what has a name.
+    #[derive(Default)]
+    struct Largest(Vec<(String, f64)>);
+
+    impl Largest {
+        fn take(&mut self, name: &str, error: f64) {
+            match self.0.iter_mut().find(|(known, _)| known == name) {
+                Some((_, worst)) => *worst = worst.max(error),
+                None => self.0.push((name.to_owned(), error)),
+            }
+        }
+    }
+
     impl Reduced {
-        /// What the reduction changes along branches.
+        /// What the reduction changes along branches, as far as it was not cancelled.
         ///
         /// # Errors
         /// If an orbit cannot be read.
-        pub fn of(&self, branches: &[Branch]) -> Result<Reduction, Failure> {
-            let mut outputs: Vec<(String, f64)> = Vec::new();
+        pub fn of(
+            &self,
+            options: &Options,
+            branches: &[Branch],
+            backbone: &Backbone,
+            cancel: &Cancel,
+        ) -> Result<Reduction, Failure> {
+            let (mut outputs, mut measured) = (Largest::default(), Largest::default());
             let mut verdicts = Verdicts::default();
             for branch in branches {
+                let effects = self.reduced.effects(&self.whole, branch).cancel(cancel);
                 let step = branch.points.len().div_ceil(LOOKED_AT).max(1);
                 let points = branch.points.iter().step_by(step);
                 for point in points.clone() {
-                    let stability = self.reduced.stability_at(&self.whole, branch, point);
-                    let verdict = stability.map_err(unreadable)?.verdict;
+                    let Some(stability) = kept(effects.stability(point))? else {
+                        break;
+                    };
                     verdicts.looked_at += 1;
-                    verdicts.decided += usize::from(verdict != Verdict::Undecided);
+                    verdicts.decided += usize::from(stability.verdict != Verdict::Undecided);
                 }
                 let events = branch.events.iter().map(|event| &event.point);
                 for point in points.chain(events) {
-                    let found = self.reduced.errors_at(&self.whole, branch, point);
-                    for found in found.map_err(unreadable)? {
-                        match outputs.iter_mut().find(|(name, _)| *name == found.name) {
-                            Some((_, worst)) => *worst = worst.max(found.error),
-                            None => outputs.push((found.name, found.error)),
+                    let found = kept(effects.errors(point))?.unwrap_or_default();
+                    for found in found {
+                        outputs.take(&found.name, found.error);
+                        let asked = options.plot.iter();
+                        for wanted in asked.filter(|wanted| wanted.name == found.name) {
+                            if let Some(error) = found.of(wanted.measure) {
+                                measured.take(&wanted.to_string(), error);
+                            }
                         }
                     }
                 }
@@ -256,9 +324,36 @@ mod sparse {
                 static_vectors: reduced.vectors() - reduced.modes(),
                 frequencies: reduced.frequencies(),
                 compliance: reduced.compliance_errors(),
-                outputs,
+                outputs: outputs.0,
+                measured: measured.0,
                 verdicts,
+                backbone: self.of_backbone(backbone, cancel)?,
             })
+        }
+
+        fn of_backbone(&self, backbone: &Backbone, cancel: &Cancel) -> Result<OfBackbone, Failure> {
+            let mut of = OfBackbone::default();
+            let effects = |curve| self.reduced.effects(&self.whole, curve).cancel(cancel);
+            if let Some(free) = &backbone.free {
+                of.frequencies = kept(effects(free).frequencies())?.unwrap_or_default();
+            }
+            if let Some(resonance) = &backbone.resonance {
+                let step = resonance.points.len().div_ceil(LOOKED_AT).max(1);
+                let mut outputs = Largest::default();
+                for point in resonance.points.iter().step_by(step) {
+                    let found = kept(effects(resonance).errors(point))?.unwrap_or_default();
+                    for of in &found {
+                        outputs.take(&of.name, of.error);
+                    }
+                }
+                of.outputs = outputs.0;
+            }
+            Ok(of)
+        }
+
+        /// The parameter that all loads that change with time are proportional to.
+        pub fn drive(&self) -> Option<&str> {
+            self.whole.drive()
         }
     }
 }
@@ -284,6 +379,27 @@ impl Reduction {
             let _ = writeln!(
                 text,
                 "error      of {name} by the reduction: at most {error:.0e} of its peak-to-peak"
+            );
+        }
+        for (wanted, error) in &self.measured {
+            let _ = writeln!(
+                text,
+                "error      of {wanted} by the reduction: at most {error:.0e}"
+            );
+        }
+        let mut frequencies = self.backbone.frequencies.clone();
+        frequencies.sort_by(f64::total_cmp);
+        if let Some(worst) = frequencies.last() {
+            let middle = frequencies[frequencies.len() / 2];
+            let _ = writeln!(
+                text,
+                "error      of the frequency of free oscillation by the reduction: {middle:.0e} of it at half of the orbits, at most {worst:.0e}"
+            );
+        }
+        for (name, error) in &self.backbone.outputs {
+            let _ = writeln!(
+                text,
+                "error      of {name} in phase resonance by the reduction: at most {error:.0e} of its peak-to-peak"
             );
         }
         let Verdicts { looked_at, decided } = self.verdicts;

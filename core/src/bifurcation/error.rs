@@ -21,10 +21,39 @@ pub(crate) enum BifurcationError {
         /// How far it misses its beginning, relative to its size.
         apart: f64,
     },
-    /// The first coordinate has no load with the frequency of the excitation: there is no phase to speak of.
+    /// Matrices or forces at rest are not symmetric: there is no potential, and no mode.
     #[error(
-        "no load with the frequency of the excitation acts on the first coordinate: it has no phase resonance"
+        "mass and stiffness at rest differ from symmetry by {off:.1e}: modes are those of forces that have a potential"
     )]
+    NoPotential {
+        /// The largest difference of two entries.
+        off: f64,
+    },
+    /// The mass matrix is not positive.
+    #[error("a motion has no kinetic energy: there are no modes")]
+    NoKineticEnergy,
+    /// A mode that is not there, that nothing holds, or that does not move what is varied.
+    #[error(
+        "no free oscillation begins at mode {mode}: {modes} modes move {coordinate} and come back to rest"
+    )]
+    NoMode {
+        /// Number of the mode, from one on.
+        mode: usize,
+        /// How many there are.
+        modes: usize,
+        /// What is varied.
+        coordinate: String,
+    },
+    /// Forces at right angles to rates keep the energy, and motions do not come to rest.
+    #[error(
+        "gyroscopic forces of up to {largest:.1e} for a unit rate: free oscillations are followed where they come to rest"
+    )]
+    Gyroscopic {
+        /// The largest entry of the damping matrix that is skew-symmetric.
+        largest: f64,
+    },
+    /// No coordinate has a load with the frequency of the excitation: there is no phase to speak of.
+    #[error("no load has the frequency of the excitation: there is no phase resonance")]
     NoLoad,
     /// No orbit in phase resonance was found.
     #[error(
@@ -56,6 +85,10 @@ room_error! {
     BifurcationError, BifurcationError::kind;
     NeverAtRest { position }
     NotFree { apart }
+    NoPotential { off }
+    NoKineticEnergy {}
+    NoMode { mode, modes, coordinate }
+    Gyroscopic { largest }
     NoLoad {}
     NoResonance { value, from, to }
     Search { value, reason }
@@ -65,8 +98,14 @@ room_error! {
 impl BifurcationError {
     fn kind(&self) -> ErrorKind {
         match self {
-            Self::NotFree { .. } | Self::NoLoad => ErrorKind::Model,
-            Self::NeverAtRest { .. } | Self::NoResonance { .. } => ErrorKind::NoOrbit,
+            Self::NotFree { .. }
+            | Self::NoPotential { .. }
+            | Self::NoKineticEnergy
+            | Self::Gyroscopic { .. }
+            | Self::NoLoad => ErrorKind::Model,
+            Self::NeverAtRest { .. } | Self::NoMode { .. } | Self::NoResonance { .. } => {
+                ErrorKind::NoOrbit
+            }
             Self::Search { reason, .. } => reason.kind(),
         }
     }

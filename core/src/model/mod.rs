@@ -1,5 +1,6 @@
 //! A system at values of its parameters: where its coefficients stand, what is checked, structures given as matrices.
 
+pub(crate) mod conservative;
 pub(crate) mod error;
 pub(crate) mod layout;
 pub mod remarks;

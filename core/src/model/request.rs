@@ -124,6 +124,14 @@ pub enum RequestError {
         /// The names of all of them.
         known: Vec<String>,
     },
+    /// No coordinate has this name.
+    #[error("no coordinate is called {name}: there are {}", listed(.known))]
+    UnknownCoordinate {
+        /// The name.
+        name: String,
+        /// The names of all of them.
+        known: Vec<String>,
+    },
     /// Neither an output nor a coordinate has the name that accuracy is asked of.
     #[error("accuracy is that of an output or a coordinate, and none is called {name}: there are {}", listed(.known))]
     NoAccuracy {
@@ -205,6 +213,7 @@ crate::error::room_error! {
     Backbone {}
     OtherModel { expected, found }
     UnknownSignal { name, known }
+    UnknownCoordinate { name, known }
     NoAccuracy { name, known }
     UnknownMeasure { name }
     NoContactMeasure { name, measure }

@@ -4,6 +4,7 @@ mod casing;
 mod chain_of_beads;
 mod gear_train;
 mod microscope;
+mod passing_balls;
 mod rotor;
 
 use hertzian::structure::DMatrix;

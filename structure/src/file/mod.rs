@@ -40,6 +40,17 @@
 //! about = "what an accelerometer at the tip shows"
 //! ```
 //!
+//! The direction of a contact may turn with time, as that of a ball of a bearing whose cage turns two fifths as fast as the excitation:
+//!
+//! ```toml
+//! [[contact]]
+//! name = "ball3"
+//! law = "Ball(gap, k) { gap > 0 => k*gap^1.5, else => 0 }"
+//! arguments = { k = 1e9 }
+//! direction = { coordinates = [12] }
+//! turning = { towards = { coordinates = [13] }, by = [2, 5], from = 2.356 }
+//! ```
+//!
 //! Coordinates are counted from zero, as in numpy. A direction of several coordinates without weights is their mean. Numbers can be names
 //! of parameters, which a request may vary, and a minus may stand before a name.
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use hertzian::generic::law_from_text;
 use hertzian::law::{Bound, Law};
-use hertzian::structure::{Value, parameter};
+use hertzian::structure::{Turn, Value, parameter};
 use hertzian::system::ParameterFacts;
 use toml::Spanned;
 
@@ -15,7 +15,7 @@ use super::Files;
 use super::error::{FileError, FileFault};
 use super::text::{
     ContactText, DampingText, DirectionText, KindText, LoadText, ParameterText, TakenText, Text,
-    ValueText,
+    TurningText, ValueText,
 };
 use crate::description::{
     Damping, Direction, Gyroscopic, Load, LoadKind, OutputKind, Ratios, SparseContact,
@@ -308,10 +308,31 @@ impl Reading<'_> {
         if let Some(direction) = &text.force_direction {
             contact = contact.force_direction(self.direction(direction)?);
         }
+        if let Some(turning) = &text.turning {
+            contact = self.turning(contact, turning)?;
+        }
         if let Some(offset) = &text.offset {
             contact = contact.offset(self.value(offset, &self.length)?);
         }
         Ok(contact)
+    }
+
+    fn turning(
+        &self,
+        contact: SparseContact,
+        text: &Spanned<TurningText>,
+    ) -> Result<SparseContact, FileError> {
+        let of = text.get_ref();
+        let [numerator, denominator] = of.by;
+        if contact.force.is_some() || denominator == 0 {
+            let what = "a contact that is `turning` has no `force_direction`, and turns `by` a fraction, as [2, 5]";
+            return Err(self.at(text.span(), FileFault::Keys { what }));
+        }
+        if !of.from.is_finite() {
+            return Err(self.at(text.span(), FileFault::NotFinite { value: of.from }));
+        }
+        let turn = Turn::by(numerator, denominator).from(of.from);
+        Ok(contact.turning(self.direction(&of.towards)?, turn))
     }
 
     fn law(&self, text: &ContactText) -> Result<Arc<dyn Law>, FileError> {

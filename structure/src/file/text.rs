@@ -144,7 +144,18 @@ pub struct ContactText {
     pub arguments: BTreeMap<Spanned<String>, Spanned<ValueText>>,
     pub direction: Spanned<DirectionText>,
     pub force_direction: Option<Spanned<DirectionText>>,
+    pub turning: Option<Spanned<TurningText>>,
     pub offset: Option<Spanned<ValueText>>,
+}
+
+/// How the direction of a contact turns: towards which, by what fraction of the frequency, from which angle on.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TurningText {
+    pub towards: Spanned<DirectionText>,
+    pub by: [u32; 2],
+    #[serde(default)]
+    pub from: f64,
 }
 
 /// What an output takes along its direction.

@@ -16,10 +16,10 @@ impl Directions {
     pub(super) fn of(structure: &SparseStructure) -> Self {
         let n = structure.coordinates();
         let full = |direction: &Direction| direction.full(n);
-        let contacts = structure.contacts.iter().flat_map(|contact| {
-            let force = contact.force.as_ref().unwrap_or(&contact.gap);
-            [full(&contact.gap), full(force)]
-        });
+        let contacts = structure
+            .contacts
+            .iter()
+            .flat_map(|contact| [full(&contact.gap), full(contact.second())]);
         let loads = structure.loads.iter().map(|load| match load.kind {
             LoadKind::Force | LoadKind::Unbalance => full(&load.direction),
             LoadKind::Base | LoadKind::Acceleration => structure.mass.times(&full(&load.direction)),

@@ -179,25 +179,32 @@ impl Reduced {
         &self,
         structure: &SparseStructure,
         frequencies: impl IntoIterator<Item = f64>,
-    ) -> Self {
+        cancel: &Cancel,
+    ) -> Result<Self, ReducedError> {
+        if cancel.is_cancelled() {
+            return Err(ReducedError::Cancelled);
+        }
         let mut measured = self.clone();
         if self.coordinates > SMALL || self.vectors() == self.coordinates {
-            return measured;
+            return Ok(measured);
         }
         let options = Reduction {
             to: self.to(),
             asked: self.asked,
-            cancel: Cancel::new(),
+            cancel: cancel.clone(),
         };
         let Ok(work) = Work::new(&options, structure) else {
-            return measured;
+            return Ok(measured);
         };
         let multiples = frequencies.into_iter().map(|s| s / self.to());
         let checked = multiples.filter_map(|multiple| work.checked(self, multiple).ok());
         measured.checked.extend(checked);
+        if cancel.is_cancelled() {
+            return Err(ReducedError::Cancelled);
+        }
         let of = |c: &Checked| c.frequency;
         measured.checked.sort_by(|a, b| of(a).total_cmp(&of(b)));
         measured.checked.dedup_by(|a, b| of(a) == of(b));
-        measured
+        Ok(measured)
     }
 }

@@ -1,5 +1,6 @@
 //! Structures from files and their reduction, against closed forms and dense matrices.
 
+mod backbone;
 mod common;
 mod events;
 mod files;
@@ -8,3 +9,4 @@ mod outputs;
 mod random;
 mod reduction;
 mod reference;
+mod turning;

@@ -37,12 +37,14 @@ fn a_plate_gives_a_picture_a_reduction_and_its_error() {
     let folder = Folder::new("plate");
     let (plate, svg, json) = (plate(&folder), folder.file("a.svg"), folder.file("a.json"));
     let files = ["--structure", &plate, "--svg", &svg, "--json", &json];
-    let outcome = run_with(&[&files[..], &RANGE].concat()).expect("a branch");
+    let plot = ["--plot", "tip,tip:rms"];
+    let outcome = run_with(&[&files[..], &RANGE, &plot].concat()).expect("a branch");
     assert!(outcome.complete, "{}", outcome.summary);
     for line in [
         "reduction  ",
         " static vectors of 96 coordinates",
         "error      of tip by the reduction",
+        "error      of tip:rms by the reduction: at most ",
         "stability  of the whole structure: decided at ",
     ] {
         assert!(outcome.summary.contains(line), "{}", outcome.summary);
@@ -74,6 +76,47 @@ fn a_plate_gives_a_picture_a_reduction_and_its_error() {
     let last = branch["points"].as_array().and_then(|all| all.last());
     let contact = &last.expect("an orbit")["observed"]["contacts"][0];
     assert_eq!(contact["count"], 1);
+}
+
+/// The resonance of the plate before its stop: free oscillation begins at the frequency of its first mode, and stiffens where the stop is met.
+#[test]
+fn a_plate_has_a_backbone() {
+    let folder = Folder::new("plate-backbone");
+    let (plate, svg, json) = (plate(&folder), folder.file("a.svg"), folder.file("a.json"));
+    let files = ["--structure", &plate, "--svg", &svg, "--json", &json];
+    let range = ["--from", "1100", "--to", "1700", "--backbone"];
+    let outcome = run_with(&[&files[..], &range].concat()).expect("a branch");
+    assert!(outcome.warnings.is_empty(), "{:?}", outcome.warnings);
+    for line in [
+        "error      of the frequency of free oscillation by the reduction: ",
+        "error      of tip in phase resonance by the reduction: at most ",
+    ] {
+        assert!(outcome.summary.contains(line), "{}", outcome.summary);
+    }
+    let drawn = std::fs::read_to_string(&svg).unwrap();
+    assert!(drawn.contains("free oscillation") && drawn.contains("phase resonance"));
+    let all = all(&json);
+    let numbers = |of: &Value| -> Vec<f64> {
+        let numbers = of.as_array().expect("numbers").iter();
+        numbers.map(|x| x.as_f64().expect("a number")).collect()
+    };
+    let points = all["backbone"]["free"]["points"]
+        .as_array()
+        .expect("orbits");
+    let omega = |point: &Value| point["orbit"]["omega"].as_f64().expect("a frequency");
+    // As `scipy.linalg.eigh` has it of the same files.
+    assert!((omega(&points[0]) / 1_181.524_037_48 - 1.0).abs() < 1e-8);
+    assert!(omega(points.last().unwrap()) > 1.1 * omega(&points[0]));
+    let energies = numbers(&all["backbone"]["energies"]);
+    assert_eq!(energies.len(), points.len());
+    assert!(energies.iter().all(|energy| *energy > 0.0));
+    let errors = numbers(&all["reduction"]["backbone"]["frequencies"]);
+    assert_eq!(errors.len(), points.len());
+    let mut sorted = errors.clone();
+    sorted.sort_by(f64::total_cmp);
+    assert!(sorted[sorted.len() / 2] < 1e-6, "{errors:?}");
+    let resonance = all["backbone"]["resonance"]["points"].as_array();
+    assert!(resonance.expect("orbits").len() > 3);
 }
 
 #[test]

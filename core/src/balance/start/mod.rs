@@ -23,7 +23,8 @@ mod longer;
 mod motion;
 mod rest;
 
-use crate::balance::Resolution;
+use crate::balance::aft::Aft;
+use crate::balance::{Parity, Resolution};
 use crate::cancel::Cancel;
 use crate::continuation::newton::{NewtonError, NewtonOptions};
 use crate::continuation::statistics::Statistics;
@@ -116,6 +117,47 @@ pub(crate) fn start(
     let longer = longer::orbit(request, &found, &mut effort);
     *statistics += effort.statistics;
     longer.map_err(|attempts| attempts.without_period(period, request.value).into())
+}
+
+/// Positions in which a system rests under its mean loads.
+///
+/// # Errors
+/// If none is found.
+pub(crate) fn rest(
+    system: &dyn System,
+    parameters: &[f64],
+    cancel: &Cancel,
+) -> Result<Vec<f64>, Error> {
+    let divisor = system.facts().divisor as usize;
+    let resolution = Resolution {
+        harmonics: divisor,
+        core: divisor,
+        parity: Parity::All,
+        stride: 1,
+        samples: 8 * divisor,
+        aft: Aft::Switched,
+        period: 1,
+    };
+    let omega = 1.0;
+    let request = StartRequest {
+        system,
+        parameters,
+        omega,
+        variable: Variable::Omega,
+        value: omega,
+        resolution,
+        newton: NewtonOptions {
+            tolerance: 1e-12,
+            iterations: 60,
+            damped: true,
+        },
+        motion: None,
+        cancel,
+    };
+    let mut effort = Effort::of(effort::LIMIT, cancel);
+    let mut found = at_rest(request, &mut effort).map_err(|reason| effort.error(omega, reason))?;
+    found.truncate(system.facts().coordinates.len());
+    Ok(found)
 }
 
 /// Extended unknowns of an orbit of period one without the odd symmetry, if one is found near the symmetric one.

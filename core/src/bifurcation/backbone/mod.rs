@@ -2,8 +2,10 @@
 //! phase resonance. Each is a [`Branch`](crate::Branch), to be drawn and written as any other; it has no orbits but its own.
 
 mod free;
+mod modes;
 mod oscillation;
 mod resonance;
+mod walk;
 
 pub use free::FreeOscillation;
 pub use resonance::PhaseResonance;

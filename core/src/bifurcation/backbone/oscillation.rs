@@ -39,9 +39,12 @@ enum Rest {
 /// The phase from which a motion is repeated, as a part of its period: neither of those about which a cosine or a sine is even or odd.
 const ELSEWHERE: f64 = 0.3;
 
-/// The equations (1) of [`free`](super::free); unknowns are the other positions and the frequency, the parameter is the first position.
+/// The equations (1) of [`free`](super::free); unknowns are the other positions and the frequency, the parameter is the position of one
+/// coordinate.
 pub(super) struct Equations {
     pub(super) flow: Box<dyn Flow>,
+    /// The coordinate whose position is the parameter.
+    varied: usize,
     /// Values of the parameters.
     parameters: Vec<f64>,
     divisor: f64,
@@ -56,6 +59,7 @@ pub(super) struct Equations {
 impl Equations {
     pub(super) fn new(
         flow: Box<dyn Flow>,
+        varied: usize,
         parameters: Vec<f64>,
         divisor: u32,
         cancel: Cancel,
@@ -67,6 +71,7 @@ impl Equations {
             column: vec![0.0; n],
             units: [1.0; 2],
             divisor: f64::from(divisor),
+            varied,
             parameters,
             flow,
             cancel,
@@ -123,7 +128,7 @@ impl Equations {
     fn first_rest(&mut self, from: f64, step: f64) -> Result<Rest, FlowError> {
         let n = self.flow.coordinates();
         let mut state = vec![0.0; 2 * n];
-        state[0] = from;
+        state[self.varied] = from;
         let (mut phase, mut before) = (0.0, 0.0);
         let omega = STEP / step;
         self.flow.set(Variable::Omega, omega)?;
@@ -131,7 +136,7 @@ impl Equations {
         for _ in 0..STEPS {
             let next = phase + STEP / self.divisor;
             self.flow.advance(phase, next, &mut state, None, None)?;
-            let velocity = state[n];
+            let velocity = state[n + self.varied];
             if before * velocity < 0.0 {
                 let part = before / (before - velocity);
                 let time = (phase + part * (next - phase)) * self.divisor / omega;
@@ -147,12 +152,14 @@ impl Equations {
     fn begin(&mut self, u: &[f64]) -> Result<(), FlowError> {
         let n = self.column.len();
         self.state.fill(0.0);
-        self.state[0] = u[n];
-        self.state[1..n].copy_from_slice(&u[..n - 1]);
+        let varied = self.varied;
+        self.state[..varied].copy_from_slice(&u[..varied]);
+        self.state[varied] = u[n];
+        self.state[varied + 1..n].copy_from_slice(&u[varied..n - 1]);
         self.flow.set(Variable::Omega, u[n - 1])
     }
 
-    /// The first position.
+    /// The position that is varied.
     pub(super) fn position(&self, u: &[f64]) -> f64 {
         u[self.column.len()]
     }
@@ -249,13 +256,14 @@ impl Problem for Equations {
         let by = |column: usize, i: usize| self.tangent.columns[column * 2 * n + n + i];
         for i in 0..n {
             let row = jacobian.core_mut().row_mut(i);
-            for j in 1..n {
-                row[j - 1] = by(j, i);
+            let others = (0..n).filter(|j| *j != self.varied);
+            for (to, j) in row.iter_mut().zip(others) {
+                *to = by(j, i);
             }
             row[n - 1] = by(2 * n, i);
         }
         for i in 0..n {
-            self.column[i] = by(0, i);
+            self.column[i] = by(self.varied, i);
         }
         jacobian.set_column(&self.column);
     }

@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use super::{Coefficient, Contact, StructureError, Value};
+use super::{Coefficient, Contact, StructureError, Turn, Value};
 use crate::law::ArgumentFacts;
 use crate::model::validate;
-use crate::system::{Bound, ParameterFacts, Place, Wave};
+use crate::system::{Bound, ParameterFacts, Part, Place, Wave};
 
 /// Coefficients and parameters as they are gathered.
 #[derive(Default)]
@@ -86,6 +86,7 @@ impl Assembly {
         index: usize,
         contact: &Contact,
         coordinates: usize,
+        divisor: u32,
     ) -> Result<(), StructureError> {
         let law = contact.law.facts();
         if law.arguments.len() != contact.arguments.len() {
@@ -96,7 +97,8 @@ impl Assembly {
             });
         }
         let force = contact.force.as_ref().unwrap_or(&contact.gap);
-        for direction in [&contact.gap, force] {
+        let across = contact.turning.iter().map(|(across, _)| across);
+        for direction in [&contact.gap, force].into_iter().chain(across) {
             if direction.len() != coordinates {
                 return Err(StructureError::DirectionSize {
                     contact: index,
@@ -106,19 +108,15 @@ impl Assembly {
             }
         }
         let wave = Wave::CONSTANT;
-        for (row, (&force, &gap)) in force.iter().zip(&contact.gap).enumerate() {
-            let along = Place::ForceDirection {
-                contact: index,
-                row,
-                wave,
-            };
-            self.add(along, &force.into())?;
-            let across = Place::GapDirection {
-                contact: index,
-                column: row,
-                wave,
-            };
-            self.add(across, &gap.into())?;
+        if let Some((across, turn)) = &contact.turning {
+            if contact.force.is_some() {
+                return Err(StructureError::TurningForce { contact: index });
+            }
+            for (wave, direction) in turning(&contact.gap, across, *turn, divisor) {
+                self.directions(index, wave, [&direction, &direction])?;
+            }
+        } else {
+            self.directions(index, wave, [force, &contact.gap])?;
         }
         let offset = Place::Offset {
             contact: index,
@@ -132,6 +130,27 @@ impl Assembly {
             };
             self.add(place, value)?;
             self.argument(&law.name, &law.arguments[argument], value)?;
+        }
+        Ok(())
+    }
+
+    /// Adds the directions of the force and of the gap of a contact, times a wave.
+    fn directions(
+        &mut self,
+        contact: usize,
+        wave: Wave,
+        [force, gap]: [&[f64]; 2],
+    ) -> Result<(), StructureError> {
+        for (row, (&force, &gap)) in force.iter().zip(gap).enumerate() {
+            let along = Place::ForceDirection { contact, row, wave };
+            self.add(along, &force.into())?;
+            let column = row;
+            let across = Place::GapDirection {
+                contact,
+                column,
+                wave,
+            };
+            self.add(across, &gap.into())?;
         }
         Ok(())
     }
@@ -178,6 +197,24 @@ impl Assembly {
         }
         Ok(())
     }
+}
+
+/// The waves of a direction that turns, `cos(a + r w t) u + sin(a + r w t) v`, where the base frequency is that of the excitation divided by so
+/// much.
+fn turning(u: &[f64], v: &[f64], turn: Turn, divisor: u32) -> Vec<(Wave, Vec<f64>)> {
+    let (sine, cosine) = turn.angle().sin_cos();
+    let pairs = || u.iter().zip(v);
+    let along = pairs().map(|(u, v)| cosine * u + sine * v).collect();
+    let [numerator, denominator] = turn.fraction();
+    // The divisor is a multiple of the denominator in lowest terms.
+    let harmonic = u64::from(numerator) * u64::from(divisor) / u64::from(denominator.max(1));
+    let harmonic = u32::try_from(harmonic).unwrap_or(u32::MAX);
+    let wave = |part| Wave { harmonic, part };
+    if harmonic == 0 {
+        return vec![(Wave::CONSTANT, along)];
+    }
+    let across = pairs().map(|(u, v)| cosine * v - sine * u).collect();
+    vec![(wave(Part::Cosine), along), (wave(Part::Sine), across)]
 }
 
 /// The end of a range whose values are divided by a number.

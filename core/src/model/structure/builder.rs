@@ -1,12 +1,16 @@
 //! A structure being described.
 
 use super::assembly::Assembly;
+use super::contact::common;
 use super::{Contact, DMatrix, Structure, StructureError, Value};
 use crate::error::Error;
 use crate::model::validate;
 use crate::system::{
     ContactFacts, OutputFacts, ParameterFacts, Part, Place, Signal, SystemFacts, Wave,
 };
+
+/// Directions have a common period of so many of the excitation at most.
+const MOST_TURNS: u32 = 1000;
 
 /// A structure being described; nothing is checked before [`Builder::build`].
 #[derive(Debug)]
@@ -186,6 +190,7 @@ impl Builder {
         self.assemble_matrices(&mut assembly)?;
         validate::regular(&self.matrices[0])
             .map_err(|pivot| StructureError::SingularMass { pivot })?;
+        let divisor = self.divisor()?;
         for &(row, wave, ref value) in &self.loads {
             if row >= coordinates {
                 return Err(StructureError::NoCoordinate {
@@ -194,10 +199,12 @@ impl Builder {
                 }
                 .into());
             }
+            let harmonic = wave.harmonic.saturating_mul(divisor);
+            let wave = Wave { harmonic, ..wave };
             assembly.add(Place::Load { row, wave }, value)?;
         }
         for (index, contact) in self.contacts.iter().enumerate() {
-            assembly.contact(index, contact, coordinates)?;
+            assembly.contact(index, contact, coordinates, divisor)?;
         }
         self.assemble_outputs(&mut assembly)?;
         for known in &self.parameters {
@@ -213,6 +220,7 @@ impl Builder {
             .equation("M ddot(q) + C dot(q) + K q + contacts = loads")
             .coordinates(names)
             .parameters(assembly.parameters)
+            .divisor(divisor)
             .contacts(self.contacts.len(), contacts)
             .places(assembly.places)
             .outputs(outputs);
@@ -226,6 +234,30 @@ impl Builder {
                 .map(|contact| contact.law)
                 .collect(),
         })
+    }
+
+    /// By what the frequency of the excitation is divided, so that all that turns has whole harmonics.
+    fn divisor(&self) -> Result<u32, StructureError> {
+        let mut divisor = 1_u32;
+        for (contact, of) in self.contacts.iter().enumerate() {
+            let Some((_, turn)) = &of.turning else {
+                continue;
+            };
+            let [numerator, denominator] = turn.fraction();
+            let least = turn.lowest();
+            let next = u64::from(divisor / common(divisor, least)) * u64::from(least);
+            let fits = denominator > 0 && turn.angle().is_finite() && numerator <= MOST_TURNS;
+            divisor = u32::try_from(next)
+                .ok()
+                .filter(|next| fits && *next <= MOST_TURNS)
+                .ok_or(StructureError::Turn {
+                    contact,
+                    numerator,
+                    denominator,
+                    most: MOST_TURNS,
+                })?;
+        }
+        Ok(divisor)
     }
 
     fn assemble_outputs(&self, assembly: &mut Assembly) -> Result<(), StructureError> {

@@ -32,6 +32,26 @@ pub(crate) enum StructureError {
         /// How many there must be.
         coordinates: usize,
     },
+    /// A direction turns by what is no fraction that can be followed.
+    #[error(
+        "the direction of contact {contact} turns by {numerator}/{denominator} of the frequency: there is a common period of all contacts and loads only where denominators in lowest terms have a common multiple of at most {most}"
+    )]
+    Turn {
+        /// Which contact.
+        contact: usize,
+        /// Numerator of the fraction.
+        numerator: u32,
+        /// Its denominator.
+        denominator: u32,
+        /// The largest common multiple that there may be.
+        most: u32,
+    },
+    /// The direction of a contact turns, and its force has another one.
+    #[error("the direction of contact {contact} turns: its force cannot have another one")]
+    TurningForce {
+        /// Which contact.
+        contact: usize,
+    },
     /// A number is infinite or not a number.
     #[error("{} in {place}", Decimal::plain(*.value))]
     NotFinite {
@@ -133,6 +153,8 @@ room_error! {
     StructureError, |_| ErrorKind::Model;
     MatrixSize { matrix, rows, columns, coordinates }
     DirectionSize { contact, entries, coordinates }
+    Turn { contact, numerator, denominator, most }
+    TurningForce { contact }
     NotFinite { place, value }
     SingularMass { pivot }
     NoCoordinate { coordinate, coordinates }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub use nalgebra::DMatrix;
 
 pub use self::builder::Builder;
-pub use self::contact::Contact;
+pub use self::contact::{Contact, Turn};
 pub(crate) use self::error::StructureError;
 
 use crate::error::Error;
@@ -19,7 +19,8 @@ use crate::law::Law;
 use crate::model::validate;
 use crate::system::{System, SystemFacts, Variable};
 
-/// A linear structure with contacts, built at run time: equation (1) with constant `M`, `C`, `K` and directions.
+/// A linear structure with contacts, built at run time: equation (1) with constant `M`, `C`, `K`, and directions that are
+/// constant or turn.
 ///
 /// Two masses, of which the first meets an elastic stop:
 ///
@@ -120,6 +121,11 @@ impl Value {
     pub fn times_omega(mut self, power: u8) -> Self {
         self.power = self.power.saturating_add(power);
         self
+    }
+
+    /// The parameter that it is proportional to, if there is one.
+    pub fn name(&self) -> Option<&str> {
+        self.parameter.as_ref().map(|(name, _)| name.as_str())
     }
 
     /// Its number at a frequency, where parameters that are known have their values and others the one that was given.

@@ -227,6 +227,53 @@ fn several_coordinates_in_any_units() {
     }
 }
 
+hertzian::oscillator! {
+    /// Two equal masses with springs of Hertz to the ground, and a straight one between them: they move as one in the first mode, against each other
+    /// in the second one; damped and driven.
+    Coupled(x, y) {
+        param zeta = 0.1;
+        law spring(gap) {
+            gap > 0 => gap^1.5 + zeta*dot(gap),
+            else    => -(-gap)^1.5,
+        }
+        ddot(x) + 0.2*dot(x) + spring(x) + 0.3*(x - y) = cos(omega*t);
+        ddot(y) + 0.2*dot(y) + spring(y) + 0.3*(y - x) = 0;
+    }
+}
+
+/// As one they have the closed form of one mass, though nothing holds them in the linear limit, and the slope of their force at rest is zero.
+#[test]
+fn two_masses_move_as_one() {
+    let request = FreeOscillation::of(&Coupled::default()).conservative();
+    let request = request.mode(1).along("y").from(0.4).to(1.5);
+    let curve = request.run().unwrap();
+    assert_eq!(curve.stopped, Stop::ReachedEnd);
+    let energies = request.energies(&curve).unwrap();
+    for (point, energy) in curve.points.iter().zip(energies) {
+        let [x, y] = [0, 1].map(|i| point.orbit.state()[i]);
+        assert!((x / y - 1.0).abs() < 1e-9, "{x} {y}");
+        let expected = 0.954_693_569_728_51 * y.powf(0.25);
+        assert!((point.omega() / expected - 1.0).abs() < 1e-10);
+        assert!((energy / (2.0 * 0.4 * y.powf(2.5)) - 1.0).abs() < 1e-11);
+    }
+}
+
+/// What is not there is said.
+#[test]
+fn a_mode_that_is_not_there_is_said() {
+    let request = FreeOscillation::of(&Coupled::default()).conservative();
+    let said = |request: &FreeOscillation| request.run().unwrap_err().to_string();
+    let beyond = said(&request.clone().mode(3).to(1.0));
+    assert_eq!(
+        beyond,
+        "no free oscillation begins at mode 3: 1 modes move x and come back to rest"
+    );
+    let unknown = said(&request.clone().mode(1).along("z").to(1.0));
+    assert_eq!(unknown, "no coordinate is called z: there are x, y");
+    let open = said(&request.mode(2));
+    assert!(open.contains("`to(...)` has not been called"), "{open}");
+}
+
 /// Nothing moves: in the dead zone of a contact, and at a position of equilibrium.
 #[test]
 fn rest_does_not_oscillate() {

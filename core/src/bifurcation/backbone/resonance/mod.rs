@@ -1,14 +1,15 @@
 //! Phase resonance of the damped and driven system.
 //!
-//! At phase resonance the first harmonic of a coordinate lags a quarter of a period behind that of its load, so that the load
-//! balances damping alone. With the load `a cos tau + b sin tau` and the harmonic `c cos tau + s sin tau`, the balance gets an
-//! unknown more, the frequency, and an equation more:
+//! At phase resonance the displacement that the load works on, in its first harmonic, lags a quarter of a period behind the load, so that the
+//! load balances damping alone. With the load `a_i cos tau + b_i sin tau` on coordinate `i` and its harmonic `c_i cos tau + s_i sin tau`, the
+//! balance gets an unknown more, the frequency, and an equation more:
 //!
 //! ```text
-//! R(u, omega; A) = 0,      a c + b s = 0                                                                     (1)
+//! R(u, omega; A) = 0,      sum_i (a_i c_i + b_i s_i) = 0                                                     (1)
 //! ```
 //!
-//! `A` is what is varied, usually the amplitude of the load; the derivative of `R` by it is a central difference.
+//! The first orbit is the one of a frequency response next to where (1) changes its sign, of several the one that moves most in phase with the
+//! rate, `sum_i (a_i s_i - b_i c_i)`: between resonances (1) is met where hardly anything moves. `A` is what is varied, usually the amplitude of the load; the derivative of `R` by it is a central difference.
 //!
 //! Source: Peeters, Kerschen and Golinval (2011), Dynamic testing of nonlinear vibrating structures using nonlinear normal modes,
 //! J. Sound Vib. 330 (phase lag quadrature); Volvert and Kerschen (2021), Phase resonance nonlinear modes of mechanical systems,
@@ -51,10 +52,12 @@ mod tests;
 
 const HARMONICS: usize = 20;
 const POINTS: usize = 5000;
+/// The end of the range of a response of one orbit is beside that by this part.
+const BESIDE: f64 = 1e-3;
 /// Step of the difference by what is varied, relative to its value or its range, whichever is larger.
 const STEP: f64 = 1e-6;
 
-/// Where the first coordinate is in phase resonance with its load, as a parameter varies from the value that it has: set up step by
+/// Where a system is in phase resonance with its load, as a parameter varies from the value that it has: set up step by
 /// step, then [run](PhaseResonance::run). It gives a [`Branch`] over that parameter, along which the frequency follows the resonance. Nothing is
 /// known of the stability of its orbits.
 ///
@@ -83,6 +86,7 @@ pub struct PhaseResonance {
     vary: Option<String>,
     to: Option<f64>,
     between: Option<[f64; 2]>,
+    response: Option<Branch>,
     harmonics: usize,
     max_points: usize,
     largest_step: f64,
@@ -97,6 +101,7 @@ impl PhaseResonance {
             vary: None,
             to: None,
             between: None,
+            response: None,
             harmonics: HARMONICS,
             max_points: POINTS,
             largest_step: StepControl::default().largest,
@@ -117,6 +122,31 @@ impl PhaseResonance {
         /// The first orbit has an excitation frequency between these two: there the frequency response is computed, and searched for
         /// phase resonance.
         between(low: f64, high: f64) { self.between = Some([low, high]) }
+
+        /// The first orbit is near one of this frequency response of the same system, by whatever method it was followed: instead of computing
+        /// the response [between](Self::between) two frequencies.
+        ///
+        /// ```
+        /// use hertzian::backbone::PhaseResonance;
+        /// use hertzian::{FrequencyResponse, Shooting};
+        ///
+        /// hertzian::oscillator! {
+        ///     /// Two masses, of which the second is driven.
+        ///     Pair(x, y) {
+        ///         param drive = 0.1;
+        ///         ddot(x) + 0.02*dot(x) + 2*x - y = 0;
+        ///         ddot(y) + 0.02*dot(y) + 2*y - x = drive*cos(omega*t);
+        ///     }
+        /// }
+        ///
+        /// let model = Pair::default();
+        /// let response = FrequencyResponse::of(&model).by(Shooting::new()).from(0.8).to(1.2).run()?;
+        /// let curve = PhaseResonance::of(&model).vary("drive").to(0.2).on(&response).run()?;
+        /// // Near its first mode the masses move as one, and half of the damping is that of the mass that is driven.
+        /// assert!((curve.points[0].omega() - 1.0).abs() < 1e-3);
+        /// # Ok::<(), hertzian::Error>(())
+        /// ```
+        on(response: &Branch) { self.response = Some(response.clone()) }
 
         /// Number of harmonics. Default: 20.
         harmonics(harmonics: usize) { self.harmonics = harmonics }
@@ -259,53 +289,129 @@ impl PhaseResonance {
         .until(&self.cancel)
     }
 
-    /// The orbit of the frequency response that is next to phase resonance, and that response.
+    /// The orbit of the frequency response that is next to phase resonance, and a response with its harmonics.
     fn first(&self, parameters: &[f64], value: f64) -> Result<(Orbit, Branch), Error> {
+        let plain = FrequencyResponse::of(&self.system).harmonics(self.harmonics);
+        let plain = plain.stability(false).cancel(&self.cancel);
+        if let Some(known) = &self.response {
+            let near = self.nearest(parameters, value, known)?;
+            // One orbit, by harmonics.
+            let omega = near.omega;
+            let alone = plain.near_orbit(&near).max_points(2);
+            let alone = alone.from(omega).to(omega * (1.0 + BESIDE)).run()?;
+            let first = alone.points.first().map(|point| point.orbit.clone());
+            return Ok((first.unwrap_or(near), alone));
+        }
         let [low, high] = self.between.ok_or(RequestError::Missing {
             name: "between",
             why: "it is not known where the resonance is looked for",
         })?;
-        let response = FrequencyResponse::of(&self.system).from(low).to(high);
-        let response = response.harmonics(self.harmonics).stability(false);
-        let response = response.cancel(&self.cancel);
-        let branch = response.run()?;
+        let branch = plain.from(low).to(high).run()?;
         if branch.stopped == Stop::Interrupted {
             return Err(OrbitError::Cancelled { value }.into());
         }
-        let mut balance = self.balance(parameters, low);
+        Ok((self.nearest(parameters, value, &branch)?, branch))
+    }
+
+    /// The orbit of a response that is next to phase resonance.
+    fn nearest(&self, parameters: &[f64], value: f64, response: &Branch) -> Result<Orbit, Error> {
+        if response.varied != "omega" {
+            return Err(RequestError::Varied {
+                name: response.varied.clone(),
+                must: "must be the excitation frequency of the response that resonance is looked for on",
+            }
+            .into());
+        }
+        let omegas = response.points.iter().map(Point::omega);
+        let [low, high] = omegas.fold([f64::INFINITY, 0.0], |[low, high], omega| {
+            [omega.min(low), omega.max(high)]
+        });
+        let mut balance = self.balance(parameters, high.max(f64::MIN_POSITIVE));
         let mut room = vec![0.0; balance.unknowns()];
-        if load(&balance, &mut room).1 == [0.0; 2] {
+        if !Load::of(&balance, &mut room).acts(&room) {
             return Err(BifurcationError::NoLoad.into());
         }
-        let mut lag = |orbit: &Orbit| {
+        let mut both = Vec::with_capacity(response.points.len());
+        for point in &response.points {
+            let read;
+            let orbit = if point.orbit.has_series() {
+                &point.orbit
+            } else {
+                read = response.complete(point)?;
+                &read.orbit
+            };
             balance.set(orbit.omega);
-            let (place, [a, b]) = load(&balance, &mut room);
-            let series = orbit.row(0);
-            a * series[place] + b * series[place + 1]
-        };
-        let lags: Vec<f64> = branch.points.iter().map(|p| lag(&p.orbit)).collect();
-        let change = (1..lags.len()).find(|&i| lags[i - 1] * lags[i] <= 0.0);
-        let nearest = change.map(|i| {
-            let nearer = lags[i - 1].abs() < lags[i].abs();
-            branch.points[i - usize::from(nearer)].orbit.clone()
-        });
-        let nearest = nearest.ok_or(BifurcationError::NoResonance {
+            let load = Load::of(&balance, &mut room);
+            both.push(load.phases(&room, &orbit.series, orbit.coordinates()));
+        }
+        let changes = (1..both.len()).filter(|&i| both[i - 1][0] * both[i][0] <= 0.0);
+        let nearer = changes.map(|i| i - usize::from(both[i - 1][0].abs() < both[i][0].abs()));
+        let largest = nearer.max_by(|&a, &b| both[a][1].abs().total_cmp(&both[b][1].abs()));
+        let nearest = largest.ok_or(BifurcationError::NoResonance {
             value,
             from: low,
             to: high,
         })?;
-        Ok((nearest, branch))
+        let point = &response.points[nearest];
+        if point.orbit.has_series() {
+            return Ok(point.orbit.clone());
+        }
+        Ok(response.complete(point)?.orbit)
     }
 }
 
-/// Where the harmonic of the excitation is in the series of the first coordinate, and the load there. The room is as long as the
-/// unknowns of the balance.
-fn load(balance: &Balance<'_>, load: &mut [f64]) -> (usize, [f64; 2]) {
-    load.fill(0.0);
-    balance.add_load(balance.coefficients(), 1.0, load);
-    let divisor = balance.system().facts().divisor as usize;
-    let place = 2 * divisor - 1;
-    (place, [load[place], load[place + 1]])
+/// Where the harmonic of the excitation stands in the load of all coordinates, which is in a room as long as the unknowns of a balance.
+#[derive(Clone, Copy)]
+struct Load {
+    /// In the series of a coordinate.
+    place: usize,
+    coordinates: usize,
+    /// How long that series is.
+    length: usize,
+}
+
+impl Load {
+    /// Writes the load of a balance.
+    fn of(balance: &Balance<'_>, room: &mut [f64]) -> Self {
+        room.fill(0.0);
+        balance.add_load(balance.coefficients(), 1.0, room);
+        let divisor = balance.system().facts().divisor as usize;
+        let coordinates = balance.layout().coordinates;
+        Self {
+            place: 2 * divisor - 1,
+            coordinates,
+            length: room.len() / coordinates.max(1),
+        }
+    }
+
+    /// Where cosines are in the room, coordinate by coordinate; sines stand behind them.
+    fn places(self) -> impl Iterator<Item = usize> {
+        (0..self.coordinates).map(move |i| i * self.length + self.place)
+    }
+
+    /// Its size.
+    fn size(self, room: &[f64]) -> f64 {
+        let squares = self.places().map(|i| room[i].powi(2) + room[i + 1].powi(2));
+        squares.sum::<f64>().sqrt()
+    }
+
+    fn acts(self, room: &[f64]) -> bool {
+        self.size(room) > 0.0
+    }
+
+    /// What a series of all coordinates has in phase with the load, and with its rate.
+    fn phases(self, room: &[f64], series: &[f64], coordinates: usize) -> [f64; 2] {
+        let length = series.len() / coordinates.max(1);
+        let mut both = [0.0; 2];
+        for (i, load) in self.places().enumerate() {
+            let own = i * length + self.place;
+            let [a, b] = [room[load], room[load + 1]];
+            let [c, s] = [series[own], series[own + 1]];
+            both[0] += a * c + b * s;
+            both[1] += a * s - b * c;
+        }
+        both
+    }
 }
 
 /// The equations (1). The last of the extended unknowns is what is varied, the one before the frequency.
@@ -405,14 +511,15 @@ impl Problem for Resonance<'_> {
         self.inner.clear();
         let inner = jacobian.is_some().then_some(&mut self.inner);
         self.balance.evaluate(&u[..=n], &mut residual[..n], inner);
-        let (place, [a, b]) = load(&self.balance, &mut self.load);
-        let size = a.hypot(b);
-        let (a, b) = if size > 0.0 {
-            (a / size, b / size)
+        let load = Load::of(&self.balance, &mut self.load);
+        let size = load.size(&self.load);
+        if size > 0.0 {
+            self.load.iter_mut().for_each(|x| *x /= size);
         } else {
-            (1.0, 0.0)
-        };
-        residual[n] = a * u[place] + b * u[place + 1];
+            // Without a load any phase is as good as another.
+            self.load[load.place] = 1.0;
+        }
+        residual[n] = load.phases(&self.load, &u[..n], load.coordinates)[0];
         let Some(jacobian) = jacobian else {
             return;
         };
@@ -421,8 +528,10 @@ impl Problem for Resonance<'_> {
             to.row_mut(i)[..=n].copy_from_slice(&from[..=n]);
         }
         let row = jacobian.core_mut().row_mut(n);
-        row[place] = a;
-        row[place + 1] = b;
+        for i in load.places() {
+            row[i] = self.load[i];
+            row[i + 1] = self.load[i + 1];
+        }
         self.column[n] = 0.0;
         jacobian.set_column(&self.column);
     }
