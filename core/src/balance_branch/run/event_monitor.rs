@@ -14,6 +14,8 @@
 //! ds = - T(u + du) / (dT/ds),      d lambda = du_l + ds t_l                                                    (1)
 //! ```
 //!
+//! Where that is farther along the branch than the step is long in which the event was located, (1) says nothing, and the error is infinite.
+//!
 //! What changes its sign and leads to no zero is recorded as a [`Turn`] of its kind.
 
 use super::Run;
@@ -206,6 +208,9 @@ impl<'a> Run<'a> {
         };
         let (a, here, b) = (at(-step), at(0.0), at(step));
         let along = -here / ((b - a) / (2.0 * step));
+        if along.abs() > step / DIFFERENCE {
+            return f64::INFINITY;
+        }
         let last = finer.len() - 1;
         let moved = finer[last] - point.parameter() + along * tangent[last];
         self.count(&monitor);
