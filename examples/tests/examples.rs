@@ -64,7 +64,6 @@ examples! {
     "../gear_train.rs" gear_train
     "../microscope.rs" microscope
     "../own_law.rs" own_law
-    "../passing_balls.rs" passing_balls
     "../preloaded_stop.rs" preloaded_stop
     "../response.rs" response
     "../rotor.rs" rotor

@@ -4,7 +4,6 @@ mod casing;
 mod chain_of_beads;
 mod gear_train;
 mod microscope;
-mod passing_balls;
 mod rotor;
 
 use hertzian::structure::DMatrix;
