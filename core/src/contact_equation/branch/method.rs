@@ -134,14 +134,14 @@ struct Next {
     same: Same,
 }
 
-/// What equations have in common with those before.
+/// The most that equations have in common with those before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Same {
-    /// The orbit.
+    /// The orbit alone.
     Orbit,
-    /// All but where panels end.
+    /// Its switches too: panels end elsewhere.
     Switches,
-    /// All but the shapes of gaps by which pairs of switches are told.
+    /// Its panels too: pairs of switches are told by other shapes of their gaps.
     Panels,
 }
 
@@ -367,7 +367,8 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
 
     /// Where the first orbit of a walk is in the equations that it goes on with.
     fn first_in(&mut self, halted: &Halted, next: &Next) -> Option<CurvePoint> {
-        if self.first.is_none() && !self.run.record.points.is_empty() {
+        let begun = !self.run.record.points.is_empty() && halted.first.parameter() < NOWHERE;
+        if self.first.is_none() && begun {
             self.first = FirstOrbit::new(self.run, &halted.first);
         }
         let first = self.first.as_mut();
@@ -376,9 +377,6 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
 
     /// A point of the branch in the equations that the walk goes on with, if it has a place there.
     fn point_in(&mut self, of: &CurvePoint, next: &Next) -> Option<CurvePoint> {
-        if of.parameter() >= NOWHERE {
-            return None;
-        }
         let Next {
             equations, u, same, ..
         } = next;
@@ -646,7 +644,8 @@ impl BranchProblem for ContactBranch<'_, '_> {
         let place = self.first.as_mut().map(|place| place.is_at(here));
         // A curve is not closed where its first point has no place.
         halted.first = first.unwrap_or_else(|| nowhere(halted.first.scale, length));
-        if halted.first.parameter() >= NOWHERE {
+        // Before an orbit was kept there is no first one yet.
+        if halted.first.parameter() >= NOWHERE && !self.run.record.points.is_empty() {
             halted.loses_first_direction();
         }
         self.kept = match &halted.previous {

@@ -21,7 +21,7 @@
 //!
 //! So `H` passes zero smoothly where the gap touches its level: beyond, (3) goes on with the extreme of a gap that does not reach it. The middle
 //! of two crossings of a cubic moves away from its extreme with the slope (4) by `H`. A constant `l` near it takes that out of `c`, which had
-//! a corner at `H = 0` otherwise, on both sides of which Newton's method may go to and fro. Where
+//! a corner at `H = 0` otherwise, between both sides of which Newton's method may alternate. Where
 //! the force jumps at the level, the orbit goes as the root of `H > 0`, which is the unknown there then; the gap has another shape at once there, and `l`
 //! is zero.
 //!
