@@ -138,17 +138,24 @@ fn is_alike(points: [&Point; 3]) -> bool {
 
 /// How far the states of two orbits are apart.
 fn distance(a: &Point, b: &Point) -> f64 {
-    let [from, to] = [a, b].map(|point| point.orbit.state());
-    let entries = from.iter().zip(&to).enumerate();
-    let squares = entries.map(|(i, (from, to))| {
-        let unit = if i < a.orbit.coordinates {
-            1.0
-        } else {
-            a.orbit.omega
-        };
-        ((to - from) / unit).powi(2)
+    product([a, b], b).sqrt()
+}
+
+/// Whether the state of an orbit is between those of two others, along their chord.
+pub(crate) fn is_between(ends: [&Point; 2], found: &Point) -> bool {
+    (0.0..=product(ends, ends[1])).contains(&product(ends, found))
+}
+
+/// The product of the chord of two states with the way from the first one to that of another orbit.
+fn product([a, b]: [&Point; 2], point: &Point) -> f64 {
+    let [from, to, here] = [a, b, point].map(|point| point.orbit.state());
+    let entries = from.iter().zip(&to).zip(&here).enumerate();
+    let products = entries.map(|(i, ((from, to), here))| {
+        let rate = i >= a.orbit.coordinates;
+        let unit = if rate { a.orbit.omega } else { 1.0 };
+        (to - from) * (here - from) / (unit * unit)
     });
-    squares.sum::<f64>().sqrt()
+    products.sum()
 }
 
 /// Where a branch turns, each with the number of points before it, in order along the branch. A step with a fold has other events whose values
@@ -181,14 +188,7 @@ fn along(points: &[Point], after: usize, point: &Point) -> f64 {
     let Some(Some([a, b])) = neighbours else {
         return 0.0;
     };
-    let [from, to, here] = [a, b, point].map(|point| point.orbit.state());
-    let entries = from.iter().zip(&to).zip(&here).enumerate();
-    let products = entries.map(|(i, ((from, to), here))| {
-        let rate = i >= a.orbit.coordinates;
-        let unit = if rate { a.orbit.omega } else { 1.0 };
-        (to - from) * (here - from) / (unit * unit)
-    });
-    products.sum()
+    product([a, b], point)
 }
 
 /// What a branch has at a value, in its order; what is the same is there once, since a closed branch ends where it began.

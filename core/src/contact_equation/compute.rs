@@ -85,7 +85,29 @@ pub(crate) fn orbit<'p>(
     guesses: Guesses<'_, 'p>,
     value: f64,
 ) -> Result<Point, Error> {
-    let (mut run, mut u) = begun(problem, guesses, value)?;
+    let (run, u) = begun(problem, guesses, value)?;
+    read(run, u, value)
+}
+
+/// The orbit near a motion where what is varied has a value.
+///
+/// # Errors
+/// If none is found.
+pub(super) fn orbit_near(
+    problem: &ContactProblem,
+    guess: &Guess<'_>,
+    value: f64,
+) -> Result<Point, Error> {
+    let first = first(problem, guess, value)?;
+    let (run, u) = fitting(problem, first).ok_or(lost(value))?;
+    read(run, u, value)
+}
+
+/// What is read off an orbit, which is solved for again where its nodes overlook something.
+///
+/// # Errors
+/// If it is lost then.
+fn read(mut run: Run<'_>, mut u: Vec<f64>, value: f64) -> Result<Point, Error> {
     loop {
         let mut newton = Newton::new(&run.equations);
         let at = CurvePoint {

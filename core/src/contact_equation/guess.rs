@@ -6,6 +6,14 @@
 //! x = a + s (d v + s (3 r - 2 d v - d w + s (d v + d w - 2 r))),    r = b - a                                  (1)
 //! ```
 //!
+//! Between two orbits of a branch, at the part `p` of the way, an orbit is looked for near the motion that lies on their chord, at each phase
+//!
+//! ```text
+//! x + p (x' - x),    v + p (v' w / w' - v)                                                                     (2)
+//! ```
+//!
+//! with the velocities of both in units of how fast their phases move, `w` and `w'`.
+//!
 //! Source: de Boor (2001), A Practical Guide to Splines, chapter IV (cubic Hermite interpolation).
 
 use std::f64::consts::TAU;
@@ -25,6 +33,8 @@ pub(in crate::contact_equation) struct Guess<'g> {
     pub(in crate::contact_equation) point: &'g Point,
     /// States at equal distances, each with all positions and then all velocities; none where the series of the orbit tells them.
     samples: Vec<f64>,
+    /// Another one with as many coordinates, and the part of the way to it.
+    toward: Option<(Box<Self>, f64)>,
 }
 
 impl<'g> Guess<'g> {
@@ -33,6 +43,15 @@ impl<'g> Guess<'g> {
         Self {
             point,
             samples: Vec::new(),
+            toward: None,
+        }
+    }
+
+    /// On the chord to another one, at a part of the way.
+    pub(in crate::contact_equation) fn toward(self, other: Self, part: f64) -> Self {
+        Self {
+            toward: Some((Box::new(other), part)),
+            ..self
         }
     }
 
@@ -82,7 +101,11 @@ impl<'g> Guess<'g> {
             let mut keep = |_: f64, state: &[f64]| samples.extend_from_slice(state);
             history::record(&mut map, &mut state, 1, SAMPLES, &mut keep).map_err(failed)?;
         }
-        Ok(Self { point, samples })
+        Ok(Self {
+            point,
+            samples,
+            toward: None,
+        })
     }
 
     /// How fast its phase moves.
@@ -92,6 +115,22 @@ impl<'g> Guess<'g> {
 
     /// Writes positions and velocities at a phase.
     pub(in crate::contact_equation) fn write(&self, phase: f64, state: &mut [f64]) {
+        self.write_own(phase, state);
+        let Some((other, part)) = &self.toward else {
+            return;
+        };
+        let mut there = vec![0.0; state.len()];
+        other.write(phase, &mut there);
+        let pace = self.rate() / other.rate();
+        let (positions, velocities) = there.split_at_mut(state.len() / 2);
+        velocities.iter_mut().for_each(|v| *v *= pace);
+        // (2)
+        for (x, there) in state.iter_mut().zip(positions.iter().chain(&*velocities)) {
+            *x += part * (there - *x);
+        }
+    }
+
+    fn write_own(&self, phase: f64, state: &mut [f64]) {
         let orbit = &self.point.orbit;
         if self.samples.is_empty() {
             return write_series(orbit, phase / self.rate(), state);

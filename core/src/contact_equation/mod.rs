@@ -15,7 +15,8 @@
 //! | [`switches`] | which switches an orbit has, whether they fit, equations with others |
 //! | [`branch`] | what the engine of branches asks for: events, extremes of gaps; how a branch is resumed |
 //!
-//! [`problem`] is what was asked for, [`options`] how, [`guess`] where a first orbit is looked for, and [`compute`] begins: one orbit, or a branch.
+//! [`problem`] is what was asked for, [`options`] how, [`guess`] where an orbit is looked for, and [`compute`] begins: one orbit, or a branch; [`at`] has the orbits
+//! of a branch at a value.
 //!
 //! Switches are unknowns and solved for. That there are no others is told by extremes of gaps, which are looked for between samples of the
 //! motion: see [`extremes`](orbit::extremes) for what that may miss.
@@ -25,6 +26,7 @@
 //! Source: Babitsky (1998), Theory of Vibro-Impact Systems and Applications, section 2.2 (integral equations of contact forces); Gauss
 //! collocation as in Hairer, Norsett and Wanner (1993), Solving Ordinary Differential Equations I, section II.7.
 
+pub(crate) mod at;
 mod branch;
 mod collocation;
 pub(crate) mod compute;

@@ -16,11 +16,13 @@ use crate::branches::point::{Event, Point};
 use crate::branches::progress::{Progress, Stage};
 use crate::branches::request::{Guess, Request};
 use crate::branches::stability::Stability;
+use crate::contact_equation;
+use crate::contact_equation::problem::ContactProblem;
 use crate::error::Error;
 use crate::event::Side;
 use crate::model::request::RequestError;
 use crate::model::validate;
-use crate::shooting::{self, BifurcationCurve, Shooting, at};
+use crate::shooting::{self, BifurcationCurve, Shooting};
 use crate::system::System;
 
 impl Branch {
@@ -59,7 +61,16 @@ impl Branch {
         // Errors of shooting are known with its maps.
         request.stability |= matches!(following, Following::ContactEquation { .. });
         let asked = shooting::Asked::of(&request, &shooting);
-        let mut found = at::at(&asked.problem(value, value)?, self, value)?;
+        let mut found = if let Following::ContactEquation { .. } = following {
+            let problem = asked.held().problem(value, value)?;
+            contact_equation::at::at(
+                &ContactProblem::new(problem, request.tolerance),
+                self,
+                value,
+            )?
+        } else {
+            shooting::at::at(&asked.problem(value, value)?, self, value)?
+        };
         for point in found.iter_mut().filter(|_| !verdicts) {
             point.stability = Stability::unknown();
         }

@@ -21,6 +21,8 @@ use crate::time::MotionError;
 const MET: f64 = 1e-6;
 /// Segments that an orbit is looked for in, in units of those that its neighbours have: first as many.
 const SEGMENTS: [usize; 3] = [1, 4, 16];
+/// Ways in which the orbit between two neighbours is looked for.
+pub(crate) const WAYS: usize = SEGMENTS.len();
 /// States that differ by this part of the orbit's size are the same.
 const SAME: f64 = 1e-9;
 
@@ -33,19 +35,21 @@ pub(crate) fn at(
     branch: &Branch,
     value: f64,
 ) -> Result<Vec<Point>, Error> {
-    let same = |a: &Point, b: &Point| is_same(a, b);
-    let search =
-        |ends: [&Point; 2], value: f64, way: usize| between(problem, ends, value, SEGMENTS[way]);
-    orbits_at(branch, value, SEGMENTS.len(), search, same)
+    let search = |ends: [&Point; 2], value: f64, way: usize| between(problem, ends, value, way);
+    orbits_at(branch, value, WAYS, search, is_same)
 }
 
-/// The orbit at a value from near the chord of two others, in so many times as many segments as they have.
-fn between(
+/// The orbit at a value from near the chord of two others, in one of the ways.
+///
+/// # Errors
+/// If it is not found.
+pub(crate) fn between(
     problem: &ShootingProblem,
     [a, b]: [&Point; 2],
     value: f64,
-    times: usize,
+    way: usize,
 ) -> Result<Point, Error> {
+    let times = SEGMENTS[way];
     let motion = |reason| MotionError { value, reason };
     let (equations, u) = start::of_point(problem, a)?;
     let mut first = First {
@@ -98,7 +102,8 @@ fn between(
     compute::read(problem, first, value)
 }
 
-fn is_same(a: &Point, b: &Point) -> bool {
+/// Whether two orbits are one, as far as they are known.
+pub(crate) fn is_same(a: &Point, b: &Point) -> bool {
     let size = a.size();
     let (first, second) = (a.orbit.state(), b.orbit.state());
     let mut pairs = first.iter().zip(&second).enumerate();

@@ -1,6 +1,6 @@
 //! The same orbits in several ways, and all orbits at a value.
 
-use hertzian::{Aft, FrequencyResponse, System, Verdict};
+use hertzian::{Aft, Branch, ContactEquation, FrequencyResponse, Shooting, System, Verdict};
 
 use crate::response::{CONTACT, Continuous, Duffing};
 
@@ -67,7 +67,8 @@ fn generated_and_interpreted_models_give_one_curve() {
     }
 }
 
-/// Near a fold there are three orbits on one side and one on the other; all are found, and none twice.
+/// Near a fold there are three orbits on one side and one on the other; all are found by every method, and none twice. Those of the contact
+/// equation are those of shooting within the stated errors.
 #[test]
 fn every_solution_is_returned_beside_a_fold() {
     let model = Continuous {
@@ -76,25 +77,16 @@ fn every_solution_is_returned_beside_a_fold() {
         load: 0.0,
         drive: 0.1,
     };
-    let branch = FrequencyResponse::of(&model)
-        .from(0.6)
-        .to(1.7)
-        .harmonics(10)
-        .samples(512)
-        .run()
-        .unwrap();
-    let folds: Vec<f64> = branch.folds().map(|fold| fold.point.value).collect();
-    let (upper, lower) = (folds[0].max(folds[1]), folds[0].min(folds[1]));
-    for distance in [1e-3, 1e-4, 3e-5, 1e-5, 1e-6] {
-        for (value, count) in [
-            (upper - distance, 3),
-            (upper + distance, 1),
-            (lower + distance, 3),
-            (lower - distance, 1),
-        ] {
+    let request = FrequencyResponse::of(&model).from(0.6).to(1.7);
+    let balance = request.clone().harmonics(10).samples(512).run().unwrap();
+    let contact = request.clone().by(ContactEquation::new()).run().unwrap();
+    let shooting = request.by(Shooting::new()).run().unwrap();
+    for branch in [&balance, &contact, &shooting] {
+        for (value, count) in beside_folds(branch, &[1e-3, 1e-4, 3e-5, 1e-5, 1e-6]) {
             let found = branch.at(value).unwrap();
             let sizes: Vec<f64> = found.iter().map(hertzian::Point::peak_to_peak).collect();
-            assert_eq!(found.len(), count, "{value}: {sizes:?}");
+            let method = branch.method();
+            assert_eq!(found.len(), count, "{method:?} {value}: {sizes:?}");
             assert!(found.iter().all(|point| point.value == value));
             assert!(
                 sizes
@@ -104,6 +96,33 @@ fn every_solution_is_returned_beside_a_fold() {
             );
         }
     }
+    for (value, count) in beside_folds(&contact, &[0.1, 1e-2, 1e-4]) {
+        let [orbits, others] = [&contact, &shooting].map(|branch| branch.at(value).unwrap());
+        assert_eq!([orbits.len(), others.len()], [count; 2]);
+        for (orbit, other) in orbits.iter().zip(&others) {
+            let apart = (orbit.peak_to_peak() / other.peak_to_peak() - 1.0).abs();
+            let stated = orbit.error.unwrap() + other.error.unwrap();
+            assert!(
+                apart <= stated && stated < 1e-6,
+                "{value}: {apart} {stated}"
+            );
+        }
+    }
+}
+
+/// Values beside the folds of a branch that bends to smaller ones, at some distances, with how many orbits there are.
+fn beside_folds(branch: &Branch, distances: &[f64]) -> Vec<(f64, usize)> {
+    let folds: Vec<f64> = branch.folds().map(|fold| fold.point.value).collect();
+    let (upper, lower) = (folds[0].max(folds[1]), folds[0].min(folds[1]));
+    let beside = distances.iter().flat_map(|distance| {
+        [
+            (upper - distance, 3),
+            (upper + distance, 1),
+            (lower + distance, 3),
+            (lower - distance, 1),
+        ]
+    });
+    beside.collect()
 }
 
 /// All three methods agree where contact is not lost.
