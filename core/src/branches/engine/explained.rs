@@ -2,12 +2,13 @@
 
 use super::Engine;
 use super::grazing::Bent;
-use crate::branches::extreme::Bend;
+use crate::branches::extreme::{Bend, crossings, passed};
 use crate::branches::moduli;
 use crate::branches::point::Point;
 use crate::branches::problem::BranchProblem;
 use crate::branches::record::Kept;
 use crate::branches::stability::Verdict;
+use crate::continuation::follow::CurvePoint;
 use crate::event::{EventKind, Turn};
 
 impl Engine {
@@ -26,6 +27,34 @@ impl Engine {
                 record.turns[place].value = value;
             }
         }
+    }
+
+    /// Says what happened in a step that could not be looked at, as far as its ends tell: that a level was touched, or that the branch turned.
+    pub(super) fn say_unseen(&mut self, problem: &mut dyn BranchProblem, at: &CurvePoint) {
+        let Some(before) = self.displaced.take() else {
+            return;
+        };
+        let Some(next) = self.gaps_at(problem, at) else {
+            return;
+        };
+        let ends = [&before.extremes, &next.extremes].map(|extremes| &extremes[..]);
+        let [here, there] = ends.map(crossings);
+        let touched = here != there || !passed(ends[0], ends[1]).is_empty();
+        let vanishing = problem.vanishing();
+        let slopes = [&before.point, at].map(|at| at.known_slope(vanishing));
+        let turned = matches!(slopes, [Some(here), Some(there)] if here * there < 0.0);
+        let kind = match (touched, turned) {
+            (true, turns) => EventKind::Grazing { turns },
+            (false, true) => EventKind::Fold,
+            (false, false) => return,
+        };
+        let turn = Turn {
+            kind,
+            value: 0.5 * (before.point.parameter() + at.parameter()),
+            test: f64::NAN,
+            after: problem.points() - 1,
+        };
+        problem.record_mut().turns.push(turn);
     }
 
     /// Says where a verdict changes that nothing recorded explains, if all events are looked for.

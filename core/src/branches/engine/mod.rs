@@ -115,6 +115,8 @@ struct Engine {
     doubted: bool,
     /// What changed its sign in the last step at no place that was found.
     unlocated: Vec<Turn>,
+    /// The point before the last step, where that cannot be looked at: the point has no place in the unknowns of the step's end.
+    displaced: Option<Gaps>,
 }
 
 /// Follows the branch from its start to its end.
@@ -197,7 +199,11 @@ fn go_on(
                 let before = halted.previous.as_ref().filter(|_| problem.seeks_touches());
                 let gaps = before.and_then(|before| engine.gaps_at(problem, before));
                 problem.remap(&mut resized);
-                engine.keep_gaps(gaps, resized.previous.as_ref());
+                if resized.previous.is_some() {
+                    engine.keep_gaps(gaps, resized.previous.as_ref());
+                } else if gaps.is_some() {
+                    engine.displaced = gaps;
+                }
                 last = Some(halted);
                 Start::At(resized)
             }
@@ -211,6 +217,7 @@ fn go_on(
                 };
                 // What was found with the former unknowns stands.
                 problem.revert();
+                engine.displaced = None;
                 Start::At(halted)
             }
         };
@@ -261,6 +268,7 @@ impl Engine {
             bent: Vec::new(),
             doubted: false,
             unlocated: Vec::new(),
+            displaced: None,
         }
     }
 
@@ -290,7 +298,11 @@ impl Engine {
                     return Continue::Continue(());
                 }
                 let read = problem.read(newton, at);
-                self.kept(problem, at, read)
+                let flow = self.kept(problem, at, read);
+                if flow.is_continue() {
+                    self.say_unseen(problem, at);
+                }
+                flow
             }
             Visit::Between(before, next) => self.step(problem, newton, Step { before, next }),
             Visit::Failed(at, step) => {
@@ -308,6 +320,7 @@ impl Engine {
 
     /// Where the walk goes on, if not from where it was halted: behind a corner, or from the point before the last one.
     fn moved(&mut self, halted: &Halted) -> Option<Start> {
+        self.displaced = None;
         let moved = if let Some(passed) = self.passed.take() {
             halted.clone().moved_to(passed, self.options.steps.initial)
         } else {

@@ -291,6 +291,18 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         placed.is_some()
     }
 
+    /// Whether the step to an orbit is to be made again, shorter, since the equations that were prepared there have no place for the orbit before
+    /// it: what happened in the step is looked for between points that both have a place in them.
+    fn is_displaced(&mut self) -> bool {
+        if self.displaced >= DISPLACED || self.holds_last() {
+            return false;
+        }
+        self.next = None;
+        self.displaced += 1;
+        self.refused = 0;
+        true
+    }
+
     /// How many times as large as the tolerance the errors of a point are.
     fn excess(&self, point: &Point) -> f64 {
         let sizes = point.stability.multipliers.iter().map(|m| m.norm());
@@ -332,6 +344,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             return Read::Refused;
         }
         if coarse && again && self.prepare(&at.u, wanted) {
+            if self.is_displaced() {
+                return Read::TooFar;
+            }
             self.refused += 1;
             return Read::Refused;
         }
@@ -544,11 +559,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
         if !again || !self.prepare(&at.u, self.run.resolution) {
             return Read::Lost;
         }
-        // What happened in the step is looked for between points that both have a place in the equations.
-        if self.displaced < DISPLACED && !self.holds_last() {
-            self.next = None;
-            self.displaced += 1;
-            self.refused = 0;
+        if self.is_displaced() {
             return Read::TooFar;
         }
         self.refused += 1;
