@@ -195,15 +195,7 @@ fn go_on(
                     start = from;
                     continue;
                 }
-                let mut resized = halted.clone();
-                let before = halted.previous.as_ref().filter(|_| problem.seeks_touches());
-                let gaps = before.and_then(|before| engine.gaps_at(problem, before));
-                problem.remap(&mut resized);
-                if resized.previous.is_some() {
-                    engine.keep_gaps(gaps, resized.previous.as_ref());
-                } else if gaps.is_some() {
-                    engine.displaced = gaps;
-                }
+                let resized = engine.remapped(problem, &halted);
                 last = Some(halted);
                 Start::At(resized)
             }
@@ -316,6 +308,20 @@ impl Engine {
                 problem.onward(walk)
             }
         }
+    }
+
+    /// The walk where it was halted, in other unknowns. What happened in the last step cannot be looked at where its first point has no place in them.
+    fn remapped(&mut self, problem: &mut dyn BranchProblem, halted: &Halted) -> Box<Halted> {
+        let mut resized = Box::new(halted.clone());
+        let before = halted.previous.as_ref().filter(|_| problem.seeks_touches());
+        let gaps = before.and_then(|before| self.gaps_at(problem, before));
+        problem.remap(&mut resized);
+        if resized.previous.is_some() {
+            self.keep_gaps(gaps, resized.previous.as_ref());
+        } else if gaps.is_some() {
+            self.displaced = gaps;
+        }
+        resized
     }
 
     /// Where the walk goes on, if not from where it was halted: behind a corner, or from the point before the last one.

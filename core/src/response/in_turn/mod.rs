@@ -2,12 +2,15 @@
 //!
 //! What the first method has found stands until the balance is whole or comes farther: in memory, and in a file where the branch is
 //! kept. So whatever interrupts it, it goes on to what an uninterrupted run gives: by the first method as long as that is not lost,
-//! then by a balance from the first orbit on, and by the same balance where that has come farther already.
+//! then by a balance from the first orbit on, and by the same balance where that has come farther already. A balance that takes many times as many
+//! orbits to come as far is given up: where motions rest against a force that jumps it creeps, and resolves nothing.
 
 mod farther;
+mod patience;
 #[cfg(test)]
 mod tests;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::sealed::Follow;
@@ -28,6 +31,7 @@ use crate::orbit::observe::Accuracy;
 use crate::response::following::Left;
 use crate::shooting::Shooting;
 use farther::Farther;
+use patience::Patience;
 
 /// What is tried where the first method leads no further.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -204,8 +208,15 @@ impl Either {
             keep: farther.clone().map(|farther| farther as Arc<dyn Keep>),
             ..request.clone()
         };
-        let mut once_more = |progress: Progress<'_>| visit(again(progress));
+        let mut patience = Patience::with(found.points.len(), than);
+        let mut once_more = |progress: Progress<'_>| {
+            if patience.ends(&progress) {
+                return ControlFlow::Break(());
+            }
+            visit(again(progress))
+        };
         let other = match self.balance.run(&tried, &mut once_more) {
+            Ok(other) if patience.has_ended() => return Ok(found.after(&other)),
             Ok(other) => other,
             Err(_) if request.cancel.is_cancelled() => {
                 return Ok(self.left(request, found, Stop::Interrupted));

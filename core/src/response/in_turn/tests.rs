@@ -2,8 +2,10 @@
 
 use std::ops::ControlFlow;
 
+use super::patience::Patience;
 use super::{Either, First};
 use crate::balance_branch::options::HarmonicBalance;
+use crate::branches::point::Point;
 use crate::branches::progress::{Progress, Stage};
 use crate::branches::request::Request;
 use crate::continuation::newton::NewtonError;
@@ -148,5 +150,41 @@ fn what_is_cancelled_is_left() {
             (resumed.method(), resumed.stopped),
             (Some(OrbitMethodKind::HarmonicBalance), Stop::ReachedEnd)
         );
+    }
+}
+
+/// A balance that does not come as far in many times as many orbits is given up, and what the first method has found stands.
+#[test]
+fn a_balance_that_creeps_is_given_up() {
+    for (either, first) in both() {
+        let branch = lost(&either, 40);
+        let [begin, end] = [0, 39].map(|place| branch.points[place].clone());
+        let far = (end.value - begin.value).abs();
+        let orbits = |patience: &mut Patience, point: &Point, last: usize| {
+            let mut done = 1..=last;
+            done.find(|&done| patience.ends(&Progress::orbit(done, point)))
+        };
+        let mut creeps = Patience::with(40, far);
+        assert_eq!(orbits(&mut creeps, &begin, 1000), Some(8 * 40 + 51));
+        assert!(creeps.has_ended());
+        let mut comes = Patience::with(40, 0.9 * far);
+        assert_eq!(orbits(&mut comes, &begin, 300), None);
+        assert_eq!(orbits(&mut comes, &end, 1000), None);
+        // Two orbits as far apart as the range: the balance has 66 to come there, and steps that are too short for it.
+        let short = Branch {
+            points: vec![begin, end],
+            ..branch
+        };
+        let request = Request {
+            largest_step: 1e-3,
+            ..request()
+        };
+        let found = either.or_balance(&request, Ok(short.clone()), &mut |_| {
+            ControlFlow::Continue(())
+        });
+        let found = found.expect("a branch");
+        assert_eq!(found.method(), Some(first));
+        assert!(found.points == short.points && found.stopped == short.stopped);
+        assert!(found.statistics.accepted_steps > short.statistics.accepted_steps);
     }
 }
