@@ -157,13 +157,9 @@ fn is_among([from, to]: [f64; 2], event: &Event) -> bool {
     (from - error..=to + error).contains(&event.point.value)
 }
 
-/// How far the value of an event may be from the true one, as far as that is known.
+/// How far the value of an event may be from the true one: no farther than what is one with it, or every part would have an event that is hardly known.
 fn known_within(event: &Event) -> f64 {
-    if event.error.is_finite() {
-        event.error
-    } else {
-        0.0
-    }
+    event.error.min(SHORTEST * event.point.value.abs())
 }
 
 /// Whether some of the events between two points, each of them once, lead from what is outside of the unit circle at one of the points, by (1), to another number at
