@@ -55,6 +55,8 @@ pub(crate) struct Guesses<'g, 'p> {
     pub(crate) untouched: Option<Untouched<'p>>,
     /// An orbit that is cheap to have, where that is none.
     pub(crate) first: Option<&'g Point>,
+    /// How the orbit comes back, where that is known. Beside an event another one may be as near that comes back earlier, or with an image.
+    pub(crate) like: Option<Recurrence>,
     /// The orbit by another method, for where that leads nowhere.
     pub(crate) better: &'g mut dyn FnMut() -> Result<Point, Error>,
 }
@@ -276,6 +278,7 @@ fn begun<'p>(
     let Guesses {
         untouched,
         first: guess,
+        like,
         better,
     } = guesses;
     if let Some(Untouched(run, u)) = untouched {
@@ -285,6 +288,11 @@ fn begun<'p>(
     let fitting = |guess: &Guess<'_>| {
         let first = first(problem, guess, value)?;
         let found = fitting(problem, first);
+        let is_it = |run: &Run<'_>| {
+            let found = run.equations.skeleton.recurrence();
+            like.as_ref().is_none_or(|like| like == found)
+        };
+        let found = found.filter(|(run, _)| is_it(run));
         found.ok_or_else(|| Error::from(lost(value)))
     };
     fitting(&Guess::of(problem, guess)?).or_else(|reason| {

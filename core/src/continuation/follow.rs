@@ -186,6 +186,13 @@ impl Halted {
         self.turned = true;
     }
 
+    /// The last step has passed the first point, which ends the walk if it has gone against its first direction before.
+    pub(crate) fn passes_first(&mut self) {
+        if self.turned && self.ended.is_none() {
+            self.ended = Some(Stop::Closed);
+        }
+    }
+
     /// Whether its step and its scales are numbers that a walk can have: they may have been read from a file.
     pub(crate) fn is_possible(&self) -> bool {
         let positive = |x: f64| x.is_finite() && x > 0.0;

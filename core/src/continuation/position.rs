@@ -49,7 +49,7 @@ impl Position {
             }
             Start::At(mut halted) => {
                 let mut stepper = Stepper::of(problem, options, &mut halted);
-                let at_end = halted.ended.is_some();
+                let at_end = halted.ended.is_some_and(|stop| stop != Stop::Closed);
                 let point = stepper.again(problem, newton, &halted.point, at_end)?;
                 Ok(Self::of(stepper, Halted { point, ..*halted }))
             }

@@ -38,6 +38,7 @@ impl Follow for ContactEquation {
         let guesses = Guesses {
             untouched,
             first: first.as_ref(),
+            like: None,
             better: &mut || self.shooting().orbit(request, value),
         };
         compute::orbit(&problem, guesses, value)
@@ -106,6 +107,7 @@ pub(super) fn run(
     let guesses = Guesses {
         untouched,
         first: first.as_ref(),
+        like: None,
         better: &mut || equation.shooting().orbit(request, range[0]),
     };
     let followed = compute::branch(&problem, guesses, range, visit)?;
@@ -155,6 +157,7 @@ fn switch(
     let guesses = Guesses {
         untouched: None,
         first: Some(&first),
+        like: Some(first.orbit.recurrence()),
         better: &mut || Ok(first.clone()),
     };
     let followed = compute::branch_from(&problem, guesses, value, toward, range, visit)?;
@@ -188,6 +191,7 @@ pub(super) fn both_ways(
             let guesses = Guesses {
                 untouched,
                 first: first.as_ref(),
+                like: None,
                 better: &mut || equation.shooting().orbit(request, value),
             };
             let toward = Toward {

@@ -17,7 +17,7 @@
 
 use super::Engine;
 use super::inside::step_between;
-use super::seen::{Seen, changes, is_modulus};
+use super::seen::{Seen, changes, is_modulus, signs};
 use crate::branches::moduli;
 use crate::branches::point::Event;
 use crate::branches::problem::{BranchProblem, Change, Test};
@@ -56,11 +56,11 @@ impl Engine {
             for [a, b] in parts {
                 let located = changes(problem, &a, &b);
                 let events = problem.record().events.get(known..).unwrap_or_default();
-                let [from, to] = span(problem, [&a, &b], events);
-                let is_long = to - from > SHORTEST * to.abs();
+                let span = span(problem, [&a, &b], events);
+                let is_long = span[1] - span[0] > SHORTEST * span[1].abs();
                 let alone = events.iter().any(|event| {
                     // A fold may be beyond both ends, and far from both along the branch however near they are in value.
-                    let between = (from..=to).contains(&event.point.value);
+                    let between = is_among(span, event);
                     (event.kind == EventKind::Fold || (is_long && between))
                         && hides(problem, [&a, &b], event)
                 });
@@ -130,18 +130,36 @@ fn hides(problem: &dyn BranchProblem, pair: [&Seen; 2], event: &Event) -> bool {
     beside(event).is_some_and(|fits| ends.iter().flatten().any(|outside| !fits.contains(outside)))
 }
 
-/// The values between two points: where the branch turns between both, those up to the folds among these events as well.
+/// The values between two points: where the branch turns between both, up to the fold there as well. Among these events that is the nearest one on the
+/// side that the branch goes to.
 fn span(problem: &dyn BranchProblem, pair: [&Seen; 2], events: &[Event]) -> [f64; 2] {
-    let found = changes(problem, pair[0], pair[1]);
-    let turns = found.iter().any(|change| change.test == Test::Slope);
-    let folds = events
-        .iter()
-        .filter(|event| turns && event.kind == EventKind::Fold);
-    let folds = folds.map(|event| event.point.value);
-    let values = step_between(pair).parameters().into_iter().chain(folds);
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| {
-        [least.min(x), most.max(x)]
-    })
+    let [a, b] = step_between(pair).parameters();
+    let [mut least, mut most] = [a.min(b), a.max(b)];
+    let Some([falls, true]) =
+        signs(problem, pair, Test::Slope).map(|[before, after]| [before, before != after])
+    else {
+        return [least, most];
+    };
+    let (end, sign) = if falls { (least, -1.0) } else { (most, 1.0) };
+    let folds = events.iter().filter(|event| event.kind == EventKind::Fold);
+    let beyond = folds.filter(|fold| sign * (fold.point.value - end) >= -known_within(fold));
+    let values = beyond.map(|fold| fold.point.value);
+    let nearest = values.min_by(|x, y| (x - end).abs().total_cmp(&(y - end).abs()));
+    if let Some(value) = nearest {
+        (least, most) = (least.min(value), most.max(value));
+    }
+    [least, most]
+}
+
+/// Whether an event is among the values between two points, as far as it is known.
+fn is_among([from, to]: [f64; 2], event: &Event) -> bool {
+    let error = known_within(event);
+    (from - error..=to + error).contains(&event.point.value)
+}
+
+/// How far the value of an event may be from the true one: no farther than what is one with it, or every part would have an event that is hardly known.
+fn known_within(event: &Event) -> f64 {
+    event.error.min(SHORTEST * event.point.value.abs())
 }
 
 /// Whether some of the events between two points, each of them once, lead from what is outside of the unit circle at one of the points, by (1), to another number at
@@ -150,8 +168,8 @@ fn explain(problem: &dyn BranchProblem, pair: [&Seen; 2], events: &[Event]) -> b
     let [Some(here), Some(there)] = pair.map(|seen| outside(problem, seen)) else {
         return false;
     };
-    let [from, to] = span(problem, pair, events);
-    let between = |event: &&Event| (from..=to).contains(&event.point.value);
+    let span = span(problem, pair, events);
+    let between = |event: &&Event| is_among(span, event);
     let ways: Vec<_> = events.iter().filter(between).filter_map(beside).collect();
     here != there && ways.len() <= MOST && lead(&ways, 0, here, &|_, number| number == there)
 }
@@ -167,8 +185,8 @@ fn follow(
     let [Some(here), Some(there)] = pair.map(|seen| outside(problem, seen)) else {
         return true;
     };
-    let [from, to] = span(problem, pair, events);
-    let between = |event: &&Event| (from..=to).contains(&event.point.value);
+    let span = span(problem, pair, events);
+    let between = |event: &&Event| is_among(span, event);
     let known = events.iter().filter(between);
     let known: Option<Vec<_>> = known
         .map(|event| Some((event.kind, beside(event)?)))
@@ -247,4 +265,22 @@ fn outside(problem: &dyn BranchProblem, seen: &Seen) -> Option<usize> {
         let tells = value.is_known() && value.mantissa.abs() > problem.noise(index);
         tells.then(|| count + usize::from(!value.is_negative()))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A fold leads from no multiplier outside to one, a torus to three and a doubling to four: not without the torus, and none of them twice.
+    #[test]
+    fn a_torus_between_a_fold_and_a_doubling_is_asked_for() {
+        let [fold, torus, doubling] = [[0, 1], [1, 3], [3, 4]];
+        let leads = |ways: &[[usize; 2]], to: usize| lead(ways, 0, 0, &|_, n| n == to);
+        assert!(leads(&[doubling, fold, torus], 4));
+        assert!(!leads(&[doubling, fold], 4));
+        assert!(leads(&[fold], 1));
+        assert!(!lead(&[fold], 0, 0, &|used, n| used == 1 && n == 0));
+        let twice = |used: u32, n: usize| used == 3 && n == 0;
+        assert!(lead(&[fold, fold], 0, 0, &twice));
+    }
 }

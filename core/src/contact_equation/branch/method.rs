@@ -2,6 +2,7 @@
 
 use nalgebra::{Complex, DMatrix};
 
+use super::closed_states::pass_first;
 use super::events;
 use super::first_orbit::FirstOrbit;
 use super::resume_state::Rest;
@@ -69,6 +70,10 @@ pub(in crate::contact_equation) struct ContactBranch<'b, 'r> {
     pub(super) first: Option<FirstOrbit>,
     /// The same as a point of the present equations, in which the walk does not have it yet.
     first_here: Option<CurvePoint>,
+    /// Where it was in them before it was found there, while the walk goes over to that.
+    moved: Option<Vec<f64>>,
+    /// The last step has passed it, as states tell.
+    passes_first: bool,
     /// Other equations lead nowhere from the last point.
     pub(super) stuck: bool,
     /// How often the last point was refused.
@@ -184,6 +189,8 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             before: None,
             first: None,
             first_here: None,
+            moved: None,
+            passes_first: false,
             stuck: false,
             refused: 0,
             shortened: 0,
@@ -362,6 +369,15 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         if !self.keep_point(at, read) {
             return Read::Stop;
         }
+        if self.first.is_some() && pass_first(&self.run.record.points, at.scale.parameter) {
+            self.passes_first = true;
+            // Where the orbit before has no place in the present unknowns there is no step to be looked at.
+            return if before.is_empty() {
+                Read::Resize
+            } else {
+                Read::ResizeBehind
+            };
+        }
         let other = fits == Fits::Soon || wanted != self.run.resolution;
         if other && !stuck && self.prepare(&at.u, wanted) {
             return Read::ResizeBehind;
@@ -386,8 +402,12 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         if self.first.is_none() && begun {
             self.first = FirstOrbit::new(self.run, &halted.first);
         }
-        let first = self.first.as_mut();
-        first.and_then(|first| first.placed(self.run, &next.equations, &next.u))
+        let first = self.first.as_mut()?;
+        // Between equations with the same switches unknowns go over as they are.
+        if next.same != Same::Orbit && halted.first.parameter() < NOWHERE {
+            return self.point_in(&halted.first, next);
+        }
+        first.placed(self.run, &next.equations, &next.u)
     }
 
     /// A point of the branch in the equations that the walk goes on with, if it has a place there.
@@ -625,14 +645,19 @@ impl BranchProblem for ContactBranch<'_, '_> {
     }
 
     fn remap(&mut self, halted: &mut Halted) {
+        if std::mem::take(&mut self.passes_first) {
+            halted.passes_first();
+            self.before = None;
+            return;
+        }
         if let Some(found) = self.first_here.take() {
-            if let Some(first) = &mut self.first {
-                first.is_at(found.u.clone());
-            }
+            let first = self.first.as_mut();
+            self.moved = first.map(|first| first.is_at(found.u.clone()));
             halted.first = found;
             self.before = None;
             return;
         }
+        self.moved = None;
         let Some(next) = self.next.take() else {
             return;
         };
@@ -684,6 +709,9 @@ impl BranchProblem for ContactBranch<'_, '_> {
     }
 
     fn revert(&mut self) {
+        if let (Some(first), Some(former)) = (&mut self.first, self.moved.take()) {
+            first.is_at(former);
+        }
         if let Some(before) = self.before.take() {
             self.run.equations = before.equations;
             self.run.resolution = before.resolution;

@@ -8,7 +8,14 @@
 //! ```
 //!
 //! Nodes are those of Gauss and Legendre in `y`, targets are the nodes and the end. A force that leaves its level like a power of the
-//! distance is smoother in `y` than in time.
+//! distance is smoother in `y` than in time. Where `p` or `q` is larger than two, polynomials stand for the force times (1),
+//!
+//! ```text
+//! f d psi/dy = sum_l l_l(y) f_l psi'(y_l)                                                                     (3)
+//! ```
+//!
+//! in (2) too: a power of `psi` is one of `y` that is higher by `p - 1` then. What is smooth in time is one of a higher degree in exchange, which pays where
+//! many nodes are left for it.
 //!
 //! Source: Davis and Rabinowitz (1984), Methods of Numerical Integration, section 2.9 (variable transformations); Berrut and Trefethen
 //! (2004), Barycentric Lagrange interpolation, equation (4.2).
@@ -16,7 +23,7 @@
 use std::ops::Range;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use super::grading::Grading;
+use super::grading::{Grading, STEEPEST, power_with};
 use super::partway::Partway;
 use crate::numeric::fourier::gauss;
 
@@ -34,6 +41,8 @@ const _: () = {
 /// there, and with `n` points what is left of a wave that turns by `T` is as large as the Bessel function `J_2n(T / 2)`.
 const POINTS: [usize; 6] = [12, 16, 20, 24, 32, 48];
 const TURNS: [f64; 6] = [3.0, 8.0, 13.0, 18.0, 30.0, 90.0];
+/// The largest power of which polynomials stand for the force itself.
+const PLAIN_POWER: usize = 2;
 /// Points of the rule for (2).
 const PLAIN: usize = 24;
 
@@ -53,12 +62,15 @@ pub(in crate::contact_equation) struct Nodes {
     /// The nodes in `y`, and their barycentric weights.
     y: Vec<f64>,
     barycentric: Vec<f64>,
+    /// By (3), and then `d psi / dy` at the nodes; else one.
+    steep: bool,
+    slopes: Vec<f64>,
     /// Weights of the nodes beside both ends: `1 / P_n'(y_l)`, for an even number of nodes with the other sign.
     inner: Vec<f64>,
     /// Rows that give the last two coefficients of a function in Legendre polynomials of `y`.
     last: [Vec<f64>; 2],
-    /// Values at the nodes of the next count, row by row of those.
-    next: OnceLock<Vec<f64>>,
+    /// What forces are at the nodes of the next count, row by row of those, for each of its gradings.
+    next: [OnceLock<Vec<f64>>; STEEPEST * STEEPEST],
     /// Targets in `psi`: the nodes, then one.
     pub(in crate::contact_equation) targets: Vec<f64>,
     /// (2), row by row of targets.
@@ -94,6 +106,11 @@ impl Between {
 }
 
 impl Nodes {
+    /// So many nodes, with the powers that the ends ask for as far as so many have them.
+    pub(in crate::contact_equation) fn graded(count: usize, asked: [usize; 2]) -> &'static Self {
+        Self::of(count, asked.map(|power| power_with(count, power)))
+    }
+
     /// So many nodes, graded so.
     pub(in crate::contact_equation) fn of(count: usize, grading: [usize; 2]) -> &'static Self {
         type Kept = Vec<&'static Nodes>;
@@ -133,13 +150,19 @@ impl Nodes {
             row.collect()
         };
         let map = Grading::new(grading);
+        let steep = grading.iter().any(|power| *power > PLAIN_POWER);
         let psi: Vec<f64> = y.iter().map(|y| map.psi(*y)).collect();
         let mut nodes = Self {
             grading,
             map,
             inner: inner.collect(),
+            steep,
+            slopes: y
+                .iter()
+                .map(|y| if steep { map.slope(*y) } else { 1.0 })
+                .collect(),
             last: [n_less(1), n_less(2)],
-            next: OnceLock::new(),
+            next: std::array::from_fn(|_| OnceLock::new()),
             barycentric,
             targets: psi.iter().copied().chain([1.0]).collect(),
             once: Vec::new(),
@@ -213,9 +236,10 @@ impl Nodes {
                 let y = pair[0] + length * s;
                 self.polynomials_at(y, &mut values);
                 rule.left.push(end - map.psi(y));
-                let weight = w * length * map.slope(y);
+                let pairs = values.iter().zip(&self.slopes);
+                let weight = w * length * self.left_of_slope(y);
                 rule.weighted
-                    .extend(values.iter().map(|value| weight * value));
+                    .extend(pairs.map(|(value, slope)| weight * value * slope));
             }
             rule.starts.push(rule.left.len());
         }
@@ -296,8 +320,11 @@ impl Nodes {
         for ((s, w), values) in gauss.nodes.iter().zip(&gauss.weights).zip(rows) {
             let y = from + length * s;
             self.polynomials_at(y, values);
-            let (left, weight) = (psi - self.map.psi(y), w * length * self.map.slope(y));
-            rule.points.push([left, weight]);
+            for (value, slope) in values.iter_mut().zip(&self.slopes) {
+                *value *= slope;
+            }
+            let weight = w * length * self.left_of_slope(y);
+            rule.points.push([psi - self.map.psi(y), weight]);
         }
     }
 
@@ -334,23 +361,59 @@ impl Nodes {
         missed.fold(0.0, f64::max)
     }
 
-    /// What values at the nodes are at those of the next count with the same grading, row by row of these.
+    /// What forces at the nodes are at those of the next count, row by row of these.
     pub(in crate::contact_equation) fn at_next(&self, next: &Self) -> &[f64] {
-        self.next.get_or_init(|| {
+        let [p, q] = next.grading;
+        self.next[(p - 1) * STEEPEST + q - 1].get_or_init(|| {
             let mut matrix = vec![0.0; next.count() * self.count()];
             let rows = matrix.chunks_exact_mut(self.count());
-            for (row, psi) in rows.zip(&next.targets) {
-                self.polynomials(*psi, row);
+            for (row, y) in rows.zip(&next.y) {
+                self.forces_at(*y, row);
             }
             matrix
         })
     }
 
+    /// What of `d psi / dy` is no part of the polynomials.
+    fn left_of_slope(&self, y: f64) -> f64 {
+        if self.steep { 1.0 } else { self.map.slope(y) }
+    }
+
+    /// Writes the weights of forces at the nodes in the force at a `psi` between both ends, by (3).
+    pub(in crate::contact_equation) fn forces(&self, psi: f64, values: &mut [f64]) {
+        self.forces_at(self.map.inverse(psi), values);
+    }
+
+    fn forces_at(&self, y: f64, values: &mut [f64]) {
+        self.polynomials_at(y, values);
+        if !self.steep {
+            return;
+        }
+        let per = 1.0 / self.map.slope(y);
+        for (value, slope) in values.iter_mut().zip(&self.slopes) {
+            *value *= per * slope;
+        }
+    }
+
     /// The larger one of the last two coefficients of a function in Legendre polynomials, from its values at the nodes.
     pub(in crate::contact_equation) fn tail(&self, values: &[f64]) -> f64 {
-        let coefficient = |row: &Vec<f64>| row.iter().zip(values).map(|(a, f)| a * f).sum::<f64>();
-        let sizes = self.last.each_ref().map(|row| coefficient(row).abs());
-        sizes[0].max(sizes[1])
+        self.larger(values.iter().copied())
+    }
+
+    /// The same of what polynomials stand for, from forces at the nodes.
+    pub(in crate::contact_equation) fn tail_of_force(&self, forces: &[f64]) -> f64 {
+        let pairs = forces.iter().zip(&self.slopes);
+        self.larger(pairs.map(|(force, slope)| force * slope))
+    }
+
+    fn larger(&self, values: impl Iterator<Item = f64>) -> f64 {
+        let [one, other] = &self.last;
+        let mut sums = [0.0; 2];
+        for ((a, b), value) in one.iter().zip(other).zip(values) {
+            sums[0] += a * value;
+            sums[1] += b * value;
+        }
+        sums[0].abs().max(sums[1].abs())
     }
 
     /// The longest way between two targets, as a part of all.
@@ -447,7 +510,7 @@ mod tests {
     #[test]
     fn polynomials_through_the_ends_interpolate() {
         let mut weights = Vec::new();
-        for (count, grading) in [(8, [1, 1]), (12, [3, 1]), (16, [2, 4])] {
+        for (count, grading) in [(8, [1, 1]), (12, [3, 1]), (16, [2, 3])] {
             let nodes = Nodes::of(count, grading);
             for psi in [1e-4, 0.123, 0.5, 0.987, 1.0 - 1e-5, 1.0] {
                 let of = |psi: f64| psi * (1.0 + psi);
@@ -461,7 +524,7 @@ mod tests {
 
     #[test]
     fn polynomials_interpolate() {
-        for grading in [[1, 1], [3, 1], [2, 4]] {
+        for grading in [[1, 1], [3, 1], [2, 3]] {
             let nodes = Nodes::of(12, grading);
             let mut values = vec![0.0; 12];
             for psi in [0.0, 0.123, 0.5, 0.987, 1.0] {

@@ -334,7 +334,7 @@ impl Run<'_> {
                 for state in 0..skeleton.order {
                     let unit = size * self.equations.unit(state);
                     let forces = &chain.by_other(link, state)[place * n..][..n];
-                    most = most.max(unit * interval.nodes.tail(forces));
+                    most = most.max(unit * interval.nodes.tail_of_force(forces));
                     largest = forces.iter().fold(largest, |m, x| m.max(unit * x.abs()));
                 }
                 tails.push(most);
@@ -368,7 +368,7 @@ impl Run<'_> {
             let of_contacts = values.chunks_exact(interval.nodes.count());
             for (active, values) in interval.active.iter().zip(of_contacts) {
                 let size = sizes[active.contact];
-                tails.push(size * interval.nodes.tail(values));
+                tails.push(size * interval.nodes.tail_of_force(values));
                 largest = values.iter().fold(largest, |m, x| m.max(size * x.abs()));
             }
         }

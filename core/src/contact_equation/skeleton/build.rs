@@ -7,7 +7,6 @@ use super::Skeleton;
 use super::interval::{Active, Cut, Interval, Mark};
 use super::phases::Opening;
 use super::placement::{Placement, Switch};
-use crate::contact_equation::collocation::grading::STEEPEST;
 use crate::contact_equation::collocation::nodes::Nodes;
 use crate::contact_equation::linear_part::configuration::Configuration;
 use crate::contact_equation::linear_part::values::{Contact, Values};
@@ -102,11 +101,11 @@ impl Skeleton {
                     part: borders[index],
                 },
             };
-            let grading = [
+            let steepness = [
                 if panel == 0 { first } else { 1 },
                 if panel + 1 == panels { last } else { 1 },
             ];
-            let nodes = Nodes::of(self.placement.resolution.nodes, grading);
+            let nodes = Nodes::graded(self.placement.resolution.nodes, steepness);
             let unknown = self.order + self.switches.len() + self.forces;
             let of = |(place, contact): (usize, &usize)| Active {
                 contact: *contact,
@@ -121,6 +120,7 @@ impl Skeleton {
                 pieces: way.pieces.to_vec(),
                 active,
                 configuration,
+                steepness,
                 nodes,
                 ends: way.ends.filter(|_| panel + 1 == panels),
             });
@@ -206,8 +206,7 @@ impl Skeleton {
         let Switch { contact, level, .. } = self.switches[index];
         let of = &contacts[contact];
         let exponents = exponents_at(system.law(of.law), &of.arguments, level);
-        let power = grading::power_for(&exponents.iter().copied());
-        (power as usize).clamp(1, STEEPEST)
+        grading::power_for(&exponents.iter().copied()) as usize
     }
 }
 

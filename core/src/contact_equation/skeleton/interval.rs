@@ -50,6 +50,8 @@ pub(in crate::contact_equation) struct Interval {
     pub(in crate::contact_equation) active: Vec<Active>,
     /// The configuration that has the forces, where none is unknown although there are some.
     pub(in crate::contact_equation) configuration: Option<usize>,
+    /// The powers of the grading that its ends ask for.
+    pub(in crate::contact_equation) steepness: [usize; 2],
     pub(in crate::contact_equation) nodes: &'static Nodes,
     /// The switch where it ends.
     pub(in crate::contact_equation) ends: Option<usize>,

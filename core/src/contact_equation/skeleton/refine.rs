@@ -86,13 +86,14 @@ impl Skeleton {
                 1
             };
             for part in 0..parts {
-                let grading = interval.nodes.grading;
-                let grading = [
-                    if part == 0 { grading[0] } else { 1 },
-                    if part + 1 == parts { grading[1] } else { 1 },
+                let [begin, end] = interval.steepness;
+                let steepness = [
+                    if part == 0 { begin } else { 1 },
+                    if part + 1 == parts { end } else { 1 },
                 ];
-                let nodes = Nodes::of(next.unwrap_or(most), grading);
+                let nodes = Nodes::graded(next.unwrap_or(most), steepness);
                 let mut panel = Interval {
+                    steepness,
                     nodes,
                     ends: interval.ends.filter(|_| part + 1 == parts),
                     ..interval.clone()
@@ -138,7 +139,7 @@ impl Skeleton {
                     let rows = matrix.chunks_exact_mut(n);
                     for (row, target) in rows.zip(&panel.nodes.targets) {
                         let psi = (part as f64 + target) / parts as f64;
-                        interval.nodes.polynomials(psi, row);
+                        interval.nodes.forces(psi, row);
                     }
                     matrix
                 };

@@ -2,6 +2,7 @@
 
 mod affine;
 mod both_sides;
+mod closed;
 mod grazings;
 mod jumps;
 mod kinks;
@@ -11,6 +12,7 @@ mod moving_stiffness;
 mod order;
 mod ringing;
 mod several;
+mod symmetry;
 
 use nalgebra::DMatrix;
 

@@ -57,14 +57,17 @@ fn have_equal_events(one: &Branch, other: &Branch) {
     }
 }
 
-/// Orbits of a branch, every so many, are those of another one at their values.
+/// Orbits of a branch, every so many, are those of another one at their values: of all but an end.
 fn passes(branch: &Branch, every: usize, other: &Branch) {
+    let (mut compared, mut tried) = (0, 0);
     for point in branch.points.iter().skip(1).step_by(every) {
+        tried += 1;
         let there = other.at(point.value).unwrap();
         let size = point.peak_to_peak();
         let nearest = nearest(there.iter(), size, |found| found.peak_to_peak());
         // An end of one branch may be beyond that of the other.
         let Some(nearest) = nearest else { continue };
+        compared += 1;
         let apart = (nearest.peak_to_peak() / size - 1.0).abs();
         assert!(
             apart < NEAR,
@@ -73,6 +76,11 @@ fn passes(branch: &Branch, every: usize, other: &Branch) {
             point.value
         );
     }
+    let period = branch.period();
+    assert!(
+        compared > 0 && compared + 2 >= tried,
+        "period {period}: {compared} of {tried}"
+    );
 }
 
 /// Where a branch of a diagram begins: the period and the value of the event.
