@@ -80,7 +80,7 @@ impl Case {
         let system: Box<dyn System> = Box::new(reduced.structure(structure)?);
         let reduction = begin.elapsed().as_secs_f64();
         Ok(Self {
-            near: Some(near_rest(&*system, ROTOR[0])?),
+            near: None,
             coordinates: reduced.vectors(),
             system,
             range: ROTOR,
