@@ -106,6 +106,7 @@ pub use bifurcation::Bifurcations;
 pub use bifurcation::backbone;
 pub use branches::branch::{Branch, Model, Named};
 pub use branches::error::OrbitError;
+pub use branches::leap::Leap;
 pub use branches::orbit::Orbit;
 pub use branches::point::{Event, Point};
 pub use branches::progress::{Progress, Stage};

@@ -594,6 +594,8 @@ class Stop:
     ) -> Literal[
         "reached-end",
         "left-at-start",
+        "turned-back",
+        "missed",
         "closed",
         "joined",
         "joined-doublings",

@@ -16,7 +16,7 @@ pub struct PyStop(pub Stop);
 #[pymethods]
 impl PyStop {
     /// What it is: ``"reached-end"``, ``"left-at-start"``, ``"closed"``, ``"joined"``, ``"joined-doublings"``, ``"point-limit"``,
-    /// ``"step-too-short"``, ``"pulled-on"``, ``"motion"``, ``"unbounded"`` or ``"interrupted"``.
+    /// ``"step-too-short"``, ``"turned-back"``, ``"missed"``, ``"pulled-on"``, ``"motion"``, ``"unbounded"`` or ``"interrupted"``.
     #[getter]
     fn kind(&self) -> PyResult<String> {
         Ok(variant(&self.0)?.0)

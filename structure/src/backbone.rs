@@ -14,7 +14,7 @@
 //! - d(dW)/dJ                                                                                                  (2)
 //! ```
 //!
-//! along the branch, which is taken between one orbit and the next. Signs of `E` are not known where it is interpolated: sizes are added up,
+//! along each [part](Branch::parts) of the branch, which is taken between one orbit and the next. Signs of `E` are not known where it is interpolated: sizes are added up,
 //! with one sign of an entry for both orbits.
 //!
 //! Source: Landau and Lifshitz (1976), Mechanics, sections 43, 49 (the action as a function of the period, and its change where a parameter
@@ -45,7 +45,7 @@ impl Reduced {
     /// What the reduction changes of the frequency of each free oscillation of a structure, as a part of it, at equal action, to first order
     /// (2). The branch is that of a [`FreeOscillation`](hertzian::backbone::FreeOscillation) of the
     /// [reduced structure](Self::structure) that is made conservative. What is not a number, where the action does not change along the branch,
-    /// is unbounded.
+    /// is unbounded, and so is that of an orbit alone between two [leaps](hertzian::Leap).
     ///
     /// # Errors
     /// If it is a reduction of [another structure](Self::is_of), or an orbit cannot be read.
@@ -67,7 +67,7 @@ impl Reduced {
         self.is_of(structure)?;
         let of = |point: &Point| self.oscillation(structure, free, point, cancel);
         let orbits: Vec<Oscillation> = free.points.iter().map(of).collect::<Result<_, _>>()?;
-        let between = orbits.windows(2).map(|pair| {
+        let between = |pair: &[Oscillation]| {
             let action = (pair[1].action - pair[0].action).abs();
             let change = changes(structure, [&pair[0], &pair[1]]);
             let error = change / action / pair[1].omega;
@@ -78,10 +78,17 @@ impl Reduced {
             } else {
                 error
             }
-        });
-        let mut errors: Vec<f64> = between.collect();
-        if let Some(first) = errors.first().copied() {
-            errors.insert(0, first);
+        };
+        let mut orbits = &orbits[..];
+        let mut errors = Vec::with_capacity(orbits.len());
+        for part in free.parts() {
+            let (own, others) = orbits.split_at(part.len());
+            orbits = others;
+            let own: Vec<f64> = own.windows(2).map(between).collect();
+            // The first has no orbit before it, and one that is alone none at all.
+            let first = own.first().copied().unwrap_or(f64::INFINITY);
+            errors.extend(part.first().map(|_| first));
+            errors.extend(own);
         }
         Ok(errors)
     }

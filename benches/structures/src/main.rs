@@ -17,9 +17,12 @@ use cpu_time::ProcessTime;
 
 use hertzian::system::System;
 use hertzian::{ContactEquation, FrequencyResponse, HarmonicBalance, Orbit, Verdict};
-use hertzian_structure::{Reduction, file};
+use hertzian_structure::{Reduction, SparseStructure, file};
 
-use models::{Elastic, Hertz, Modes, Rotor, chain};
+use models::{Elastic, Hertz, Modes, Rotor, chain, shaft};
+
+/// Frequencies of the cage over which rotors are followed.
+const ROTOR: [f64; 2] = [0.36, 0.2];
 
 /// What is followed, and what was done before.
 struct Case {
@@ -53,7 +56,8 @@ impl Case {
             }
             "chain" => (Box::new(chain(count, count)?), [0.2, 0.3]),
             "chain-one" => (Box::new(chain(count, 1)?), [0.275, 0.298]),
-            "rotor" => (Box::new(Rotor::default()), [0.36, 0.2]),
+            "rotor" => (Box::new(Rotor::default()), ROTOR),
+            "rotor-modes" => return Self::of_modes(&shaft(count)?),
             _ => return Err(format!("no case {kind}").into()),
         };
         let near = (kind == "rotor")
@@ -65,6 +69,22 @@ impl Case {
             system,
             range,
             reduction: 0.0,
+        })
+    }
+
+    /// A rotor by all of its modes.
+    fn of_modes(structure: &SparseStructure) -> Result<Self, Box<dyn Error>> {
+        let begin = ProcessTime::now();
+        let reduction = Reduction::to(ROTOR[0]).modes(structure.coordinates());
+        let reduced = reduction.steps(0).run(structure)?;
+        let system: Box<dyn System> = Box::new(reduced.structure(structure)?);
+        let reduction = begin.elapsed().as_secs_f64();
+        Ok(Self {
+            near: None,
+            coordinates: reduced.vectors(),
+            system,
+            range: ROTOR,
+            reduction,
         })
     }
 

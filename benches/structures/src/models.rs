@@ -1,9 +1,13 @@
 //! The structures that are timed.
 
-use std::f64::consts::{PI, SQRT_2};
+use std::f64::consts::{PI, SQRT_2, TAU};
+use std::sync::Arc;
 
-use hertzian::structure::{Contact, DMatrix, Structure, parameter};
+use hertzian::structure::{Contact, DMatrix, Structure, Turn, parameter};
 use hertzian::{Error, law::Law};
+use hertzian_structure::{
+    Damping, Direction, Load, LoadKind, SparseContact, SparseMatrix, SparseStructure,
+};
 
 hertzian::law! {
     /// An elastic stop.
@@ -141,4 +145,35 @@ pub fn chain(masses: usize, stops: usize) -> Result<Structure, Error> {
         structure = structure.contact(stop);
     }
     structure.build()
+}
+
+/// The shaft of [`Rotor`] from its matrices, so many masses in each of two planes, by all of its modes, on contacts that turn: every
+/// mode moves every ball.
+pub fn shaft(masses: usize) -> Result<SparseStructure, Box<dyn std::error::Error>> {
+    let n = masses as f64;
+    let matrix = |entries: Vec<(usize, usize, f64)>| {
+        let planes = [0, masses].into_iter();
+        let both = planes.flat_map(|by| entries.iter().map(move |(i, j, x)| (i + by, j + by, *x)));
+        SparseMatrix::from_triplets(2 * masses, 2 * masses, both)
+    };
+    let mass = (0..masses).map(|i| (i, i, 1.0 / n)).collect();
+    let stiffness = (0..masses).flat_map(|i| {
+        let own = if i == 0 { n } else { 2.0 * n };
+        let beside = (i > 0).then(|| [(i, i - 1, -n), (i - 1, i, -n)]);
+        beside.into_iter().flatten().chain([(i, i, own)])
+    });
+    let shaft = SparseStructure::new(matrix(mass)?, matrix(stiffness.collect())?);
+    let shaft = shaft.damping(Damping::Rayleigh {
+        mass: 0.05,
+        stiffness: 0.002,
+    });
+    let weight = Load::new(LoadKind::Force, Direction::at(0), 1.0).harmonic(0);
+    let shaft = shaft.load(weight).output("down", Direction::at(0));
+    Ok((0..8).fold(shaft, |shaft, ball| {
+        let turn = Turn::by(1, 1).from(TAU / 8.0 * f64::from(ball));
+        let hertz = Arc::new(Hertz);
+        let ball = SparseContact::new(&format!("ball{ball}"), hertz, Direction::at(0));
+        let ball = ball.arguments([1.0]).offset(0.1);
+        shaft.contact(ball.turning(Direction::at(masses), turn))
+    }))
 }

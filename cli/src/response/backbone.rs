@@ -1,10 +1,12 @@
 //! `--backbone`: free oscillation of the same oscillator, and its phase resonance.
 
+use std::fmt::Write;
+
 use hertzian::backbone::{FreeOscillation, PhaseResonance};
 use hertzian::chart::Series;
 use hertzian::error::chain;
 use hertzian::observe::Wanted;
-use hertzian::{Branch, Cancel, Error, System};
+use hertzian::{Branch, Cancel, Error, Point, System};
 use serde::Serialize;
 
 use super::models::declared;
@@ -139,6 +141,34 @@ fn of_drive(
 }
 
 impl Backbone {
+    /// For people: why each curve ended, and where nothing is known of it on the way.
+    pub fn summary(&self) -> String {
+        let mut text = String::new();
+        let free = ("free oscillation", &self.free);
+        let resonance = ("phase resonance", &self.resonance);
+        for (label, curve) in [free, resonance] {
+            let Some(curve) = curve else {
+                continue;
+            };
+            let (count, stopped) = (curve.points.len(), curve.stopped);
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "backbone   {label}: {count} orbits, {stopped}");
+            for leap in &curve.leaps {
+                let sides = [leap.after - 1, leap.after].map(|index| {
+                    let point = curve.points.get(index);
+                    point.map_or(f64::NAN, Point::omega)
+                });
+                let [from, to] = sides;
+                let _ = writeln!(
+                    text,
+                    "           not followed from omega = {from:.4} to {to:.4}: {}",
+                    leap.reason
+                );
+            }
+        }
+        text
+    }
+
     /// Lines for a picture of what is wanted, peak-to-peak where nothing is.
     pub fn references(&self, wanted: Option<&Wanted>) -> Vec<Series> {
         let free = ("free oscillation", &self.free);
@@ -146,14 +176,20 @@ impl Backbone {
         let curves = [free, resonance].into_iter();
         let curves = curves.filter_map(|(label, curve)| Some((label, curve.as_ref()?)));
         let curves = curves.map(|(label, curve)| {
-            let places = curve.points.iter().filter_map(|point| {
+            let place = |point: &Point| {
                 let y = match wanted {
                     Some(wanted) => curve.measured(wanted, point).ok()??,
                     None => point.peak_to_peak(),
                 };
                 Some([point.omega(), y])
-            });
-            Series::new(label, places.collect::<Vec<_>>())
+            };
+            let mut places: Vec<[f64; 2]> = Vec::with_capacity(curve.points.len());
+            for part in curve.parts() {
+                // No line leads from one part to the next.
+                places.extend((!places.is_empty()).then_some([f64::NAN; 2]));
+                places.extend(part.iter().filter_map(place));
+            }
+            Series::new(label, places)
         });
         curves.filter(|series| !series.points.is_empty()).collect()
     }

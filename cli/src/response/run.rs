@@ -199,6 +199,7 @@ pub fn run(
     let written: Vec<&Path> = files::paths(options).collect();
     Ok(Outcome {
         summary: summary::of(options, &branches[0], &at, &written)
+            + &backbone.summary()
             + &reduction.map_or_else(String::new, |reduction| reduction.summary())
             + &further
             + &sensitive::summary(&branches, &sensitivities),

@@ -9,6 +9,7 @@ use std::time::Duration;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::leap::Leap;
 use super::point::{Event, Point};
 use super::record::Kept;
 use crate::cancel::Cancel;
@@ -58,6 +59,9 @@ pub struct Branch {
     pub events: Vec<Event>,
     /// Turns that are not folds, and other events that could not be located.
     pub turns: Vec<Turn>,
+    /// Places where it was not followed: its orbits before and behind are of two parts.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub leaps: Vec<Leap>,
     /// Why it ended at its beginning, where it was followed both ways from an orbit.
     pub begin: Option<Stop>,
     /// Why it ended.
@@ -313,6 +317,31 @@ impl Branch {
         self.points.first().map_or(0, |point| point.orbit.period)
     }
 
+    /// Its orbits in the order in which they were followed, in parts between [places](Self::leaps) where it was not.
+    ///
+    /// ```
+    /// use hertzian::backbone::FreeOscillation;
+    ///
+    /// hertzian::oscillator! {
+    ///     Hertz(x) { ddot(x) + sgn(x)*|x|^1.5 = 0; }
+    /// }
+    ///
+    /// let curve = FreeOscillation::of(&Hertz {}).from(0.5).to(2.0).run()?;
+    /// // Nothing is left out.
+    /// assert!(curve.leaps.is_empty());
+    /// assert_eq!(curve.parts().map(<[_]>::len).sum::<usize>(), curve.points.len());
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    pub fn parts(&self) -> impl Iterator<Item = &[Point]> {
+        let ends = self.leaps.iter().map(|leap| leap.after);
+        let ends = ends.chain([self.points.len()]);
+        ends.scan(0, |from, to| {
+            let part = self.points.get(*from..to).unwrap_or_default();
+            *from = to;
+            Some(part)
+        })
+    }
+
     /// The events of one kind. Whether the branch turns back is not asked: `Grazing` of either kind gives all.
     pub fn events(&self, kind: EventKind) -> impl DoubleEndedIterator<Item = &Event> {
         self.events
@@ -365,6 +394,15 @@ impl Branch {
             turn.after = turned(turn.after);
         }
         let shift = count.saturating_sub(1);
+        let mut leaps: Vec<Leap> = back.leaps;
+        leaps.reverse();
+        for leap in &mut leaps {
+            leap.after = turned(leap.after);
+        }
+        leaps.extend(branch.leaps.drain(..).map(|leap| Leap {
+            after: leap.after + shift,
+            ..leap
+        }));
         events.extend(branch.events.drain(..).map(|event| Event {
             after: event.after + shift,
             ..event
@@ -380,6 +418,7 @@ impl Branch {
             points,
             events,
             turns,
+            leaps,
             begin: Some(back.stopped),
             ..branch
         }

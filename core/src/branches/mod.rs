@@ -7,6 +7,7 @@ pub(crate) mod engine;
 pub(crate) mod error;
 pub(crate) mod extreme;
 mod guess;
+pub(crate) mod leap;
 pub(crate) mod moduli;
 pub(crate) mod observed;
 pub(crate) mod orbit;

@@ -29,6 +29,8 @@ pub struct Point {
     /// of the first coordinate relative to its own, of the others relative to the largest of all, at this very value of what is varied. A
     /// first coordinate whose motion is not told from what is left of the equations is at rest, and measured by the largest. Where
     /// accuracy was asked of one output or coordinate, of that, as a part of itself ([`Branch::accuracy_of`](crate::Branch::accuracy_of)).
+    /// Of a [free oscillation](crate::backbone::FreeOscillation), whose size is not a function of its frequency, how far the motion misses its
+    /// beginning after a period, as a part of its size.
     /// `None` where neither the tolerance nor the stability asked for it. Infinite where it could not be estimated: nothing is known of
     /// the error then.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]

@@ -41,6 +41,7 @@ impl Record {
             points,
             events,
             turns,
+            leaps: Vec::new(),
             begin: None,
             stopped,
             statistics: Statistics::default(),

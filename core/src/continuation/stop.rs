@@ -17,6 +17,22 @@ pub enum Stop {
     ReachedEnd,
     /// The branch turned back and left the range where it had passed.
     LeftAtStart,
+    /// A curve that is followed one way, as that of free oscillation in a mode, turned back, and no part of it was found beyond.
+    TurnedBack {
+        /// Where.
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+        value: f64,
+    },
+    /// The motion that would be next on a curve of free oscillations does not come back to its beginning: it parts from its neighbours so fast that
+    /// rounding becomes visible.
+    Missed {
+        /// Value at the last orbit.
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+        value: f64,
+        /// How far it misses its beginning, as a part of its size.
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+        by: f64,
+    },
     /// The branch closed upon itself, be it one or several periods of the declaration later.
     Closed,
     /// A branch of orbits of several periods of the declaration met one of a shorter period, or one of orbits without a symmetry met one of
@@ -88,6 +104,12 @@ impl std::fmt::Display for Stop {
         match self {
             Self::ReachedEnd => write!(f, "reached the end of the range"),
             Self::LeftAtStart => write!(f, "turned back and left the range at its start"),
+            Self::TurnedBack { value } => write!(f, "turned back at {}", Decimal::plain(*value)),
+            Self::Missed { value, by } => write!(
+                f,
+                "the motion beyond {} misses its beginning by {by:.0e} of its size",
+                Decimal::plain(*value)
+            ),
             Self::Closed => write!(f, "closed upon itself"),
             Self::Joined {
                 period,

@@ -327,6 +327,7 @@ fn joined<'l>(about: About, lines: impl Iterator<Item = &'l [u8]>) -> serde_json
         points,
         events,
         turns,
+        leaps: Vec::new(),
         begin: None,
         stopped: Stop::Interrupted,
         statistics: Statistics::default(),

@@ -38,7 +38,9 @@ impl Places {
         let verdicts = branch.points.iter().map(|point| point.stability.verdict);
         let after = branch.events.iter().map(|event| event.after);
         let events: Vec<(usize, [f64; 2])> = after.zip(self.events.iter().copied()).collect();
-        let runs = runs(self.points.iter().copied().zip(verdicts), &events);
+        let leaps: Vec<usize> = branch.leaps.iter().map(|leap| leap.after).collect();
+        let places = self.points.iter().copied().zip(verdicts);
+        let runs = runs(places, &events, &leaps);
         smoothed(runs, &self.bends(branch), scale)
     }
 
@@ -49,8 +51,9 @@ impl Places {
             EventKind::Grazing { .. } => Some((*place, Bend::Corner)),
             _ => None,
         });
-        let beside = branch.turns.iter();
-        let beside = beside.flat_map(|turn| [turn.after.checked_sub(1), Some(turn.after)]);
+        let turns = branch.turns.iter().map(|turn| turn.after);
+        let beside = turns.chain(branch.leaps.iter().map(|leap| leap.after));
+        let beside = beside.flat_map(|after| [after.checked_sub(1), Some(after)]);
         let beside = beside.filter_map(|index| self.points.get(index?));
         bent.chain(beside.map(|place| (*place, Bend::Corner)))
             .collect()
@@ -289,7 +292,7 @@ impl Seen<'_> {
 
 impl Branch {
     /// The branch as runs of one stability each, by peak-to-peak of the first coordinate; neighbours share the point where they meet, which is
-    /// the event if there is one between them. Between orbits there are places where the line bends, as [`plot`](Self::plot) draws it with
+    /// the event if there is one between them, but at [places](Branch::leaps) where nothing leads from one to the other. Between orbits there are places where the line bends, as [`plot`](Self::plot) draws it with
     /// linear axes: these are interpolated.
     pub fn runs(&self) -> Vec<Run> {
         self.runs_of(place)
@@ -310,10 +313,11 @@ impl Branch {
 }
 
 /// Points with their verdicts as runs of one stability each, with events, each behind so many points. Neighbours share the point
-/// where they meet.
+/// where they meet, but where nothing leads from one to the other.
 fn runs(
     points: impl Iterator<Item = ([f64; 2], Verdict)>,
     events: &[(usize, [f64; 2])],
+    leaps: &[usize],
 ) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     let mut count = 0;
@@ -323,6 +327,10 @@ fn runs(
         let between = events.iter().filter(|(after, _)| *after == index);
         let joints: Vec<_> = between.map(|(_, place)| *place).collect();
         match runs.last_mut() {
+            Some(_) if leaps.contains(&index) => runs.push(Run {
+                line,
+                points: vec![here],
+            }),
             Some(run) if run.line == line => {
                 run.points.extend(&joints);
                 run.points.push(here);

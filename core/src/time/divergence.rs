@@ -23,7 +23,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::Stretch;
-use super::gap::{Gap, value};
+use super::gap::{Gap, Waves};
 use super::integrated::rule::Rule;
 use crate::error::Error;
 use crate::law::{LawFacts, On, Quantity, Variation};
@@ -119,10 +119,12 @@ impl Divergence {
     /// The divergence at a phase and a state, per unit of time.
     fn at(&mut self, phase: f64, state: &[f64]) -> f64 {
         let mut sum = self.constant;
+        let mut waves = Waves::at(phase);
         for (contact, gap) in &self.contacts {
             let arguments = &mut self.arguments[..contact.argument_count];
             contact.arguments(&self.coefficients, arguments);
-            let wave = |term: &Term| self.coefficients[term.coefficient] * value(term.wave, phase);
+            let mut wave =
+                |term: &Term| self.coefficients[term.coefficient] * waves.value(term.wave);
             let (gap, rate) = gap.at(phase, state);
             let law = self.system.law(contact.law);
             let by_rate = Single::of(law, On::AllPieces, arguments, [gap, rate]).by_rate;

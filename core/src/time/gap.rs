@@ -39,30 +39,57 @@ impl Gap {
     pub(crate) fn at(&self, phase: f64, state: &[f64]) -> (f64, f64) {
         let (q, v) = state.split_at(state.len() / 2);
         let (mut gap, mut rate) = (0.0, 0.0);
+        let mut waves = Waves::at(phase);
         for &(index, wave, d) in &self.direction {
-            let here = d * value(wave, phase);
+            let here = d * waves.value(wave);
             gap += here * q[index];
-            rate += here * v[index] + d * self.base * slope(wave, phase) * q[index];
+            rate += here * v[index] + d * self.base * waves.slope(wave) * q[index];
         }
         for &(wave, delta) in &self.offset {
-            gap -= delta * value(wave, phase);
-            rate -= delta * self.base * slope(wave, phase);
+            gap -= delta * waves.value(wave);
+            rate -= delta * self.base * waves.slope(wave);
         }
         (gap, rate)
     }
 }
 
-/// A wave at a phase.
-pub(crate) fn value(wave: Wave, phase: f64) -> f64 {
-    let angle = f64::from(wave.harmonic) * phase;
-    match wave.part {
-        Part::Cosine => angle.cos(),
-        Part::Sine => angle.sin(),
-    }
+/// Waves at a phase. The terms of a direction that turns have one harmonic, whose sine and cosine are computed once: of many coordinates that was
+/// nearly all of the time of a gap.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Waves {
+    phase: f64,
+    /// Of the harmonic that was asked for last.
+    harmonic: u32,
+    sine: f64,
+    cosine: f64,
 }
 
-/// Its derivative by the phase.
-fn slope(wave: Wave, phase: f64) -> f64 {
-    let (derivative, sign) = wave.derivative();
-    sign * f64::from(wave.harmonic) * value(derivative, phase)
+impl Waves {
+    pub(crate) fn at(phase: f64) -> Self {
+        Self {
+            phase,
+            harmonic: 0,
+            sine: 0.0,
+            cosine: 1.0,
+        }
+    }
+
+    /// A wave there.
+    pub(crate) fn value(&mut self, wave: Wave) -> f64 {
+        if wave.harmonic != self.harmonic {
+            let angle = f64::from(wave.harmonic) * self.phase;
+            (self.sine, self.cosine) = angle.sin_cos();
+            self.harmonic = wave.harmonic;
+        }
+        match wave.part {
+            Part::Cosine => self.cosine,
+            Part::Sine => self.sine,
+        }
+    }
+
+    /// Its derivative by the phase.
+    fn slope(&mut self, wave: Wave) -> f64 {
+        let (derivative, sign) = wave.derivative();
+        sign * f64::from(wave.harmonic) * self.value(derivative)
+    }
 }

@@ -5,7 +5,7 @@
 
 use nalgebra::DMatrix;
 
-use super::gap::{Gap, value};
+use super::gap::{Gap, Waves};
 use crate::law::{On, Variation};
 use crate::laws::single;
 use crate::model::layout::Layout;
@@ -148,9 +148,10 @@ impl<'s> Signals<'s> {
         if self.inverse_mass.is_some() {
             self.compute_loads(phase, state);
         }
+        let mut waves = Waves::at(phase);
         for (out, terms) in out.iter_mut().zip(&self.sums) {
             let values = terms.iter().map(|term| {
-                term.coefficient * value(term.wave, phase) * self.signal(term.of, state)
+                term.coefficient * waves.value(term.wave) * self.signal(term.of, state)
             });
             *out = values.sum();
         }
@@ -194,20 +195,21 @@ impl<'s> Signals<'s> {
     fn compute_loads(&mut self, phase: f64, state: &[f64]) {
         let (q, v) = state.split_at(self.layout.coordinates);
         let (loads, coefficients) = (&mut self.loads, &self.coefficients);
+        let mut waves = Waves::at(phase);
         loads.fill(0.0);
         for entry in &self.layout.load {
-            loads[entry.row] += coefficients[entry.coefficient] * value(entry.wave, phase);
+            loads[entry.row] += coefficients[entry.coefficient] * waves.value(entry.wave);
         }
         for entry in &self.layout.damping {
             loads[entry.row] -= coefficients[entry.coefficient] * v[entry.column];
         }
         for entry in &self.layout.stiffness {
-            let k = coefficients[entry.coefficient] * value(entry.wave, phase);
+            let k = coefficients[entry.coefficient] * waves.value(entry.wave);
             loads[entry.row] -= k * q[entry.column];
         }
         for (contact, force) in self.layout.contacts.iter().zip(&self.forces) {
             for term in &contact.force {
-                let e = coefficients[term.coefficient] * value(term.wave, phase);
+                let e = coefficients[term.coefficient] * waves.value(term.wave);
                 loads[term.index] -= e * force;
             }
         }

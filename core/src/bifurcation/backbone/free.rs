@@ -156,7 +156,8 @@ impl FreeOscillation {
 
         /// The oscillation that begins with this mode, counted from one in the order of the [frequencies](Self::modes) that small oscillations
         /// about the state at rest have. Where it is in resonance with another mode and turns back, the curve is taken up again at larger
-        /// positions: parts of it are missing there.
+        /// positions: parts of it are missing there, and [`Branch::leaps`] says where. Where it is not found
+        /// again it ends with [`Stop::TurnedBack`].
         ///
         /// ```
         /// use hertzian::backbone::FreeOscillation;
@@ -250,7 +251,7 @@ impl FreeOscillation {
         };
         let (found, outcome) = walk.all(first, options, &self.cancel)?;
         let stopped = self.stopped(&found, outcome)?;
-        let points = found.points;
+        let Found { points, leaps, .. } = found;
         let omega = points.first().map_or(1.0, Point::omega);
         Ok(Branch {
             model: Model::of(&self.system),
@@ -258,6 +259,7 @@ impl FreeOscillation {
             points,
             events: Vec::new(),
             turns: Vec::new(),
+            leaps,
             begin: None,
             stopped,
             statistics: newton.statistics,
@@ -274,6 +276,7 @@ impl FreeOscillation {
     fn stopped(&self, found: &Found, outcome: Result<Outcome, NewtonError>) -> Result<Stop, Error> {
         let cancelled = self.cancel.is_cancelled();
         let (nothing, value) = (found.points.is_empty(), found.position);
+        let own = found.stop(&outcome);
         Ok(match (&found.failure, outcome) {
             _ if cancelled && !nothing => Stop::Interrupted,
             _ if cancelled => return Err(OrbitError::Cancelled { value }.into()),
@@ -290,10 +293,8 @@ impl FreeOscillation {
                 reason: *reason,
             },
             (None, Err(reason)) => return Err(OrbitError::NoStart { value, reason }.into()),
-            (None, Ok(Outcome::Stopped(stop))) => stop,
-            (None, Ok(Outcome::Halted(_))) if found.has_turned() => Stop::LeftAtStart,
             // A walk along free oscillations is never resized.
-            (None, Ok(Outcome::Halted(_))) => Stop::Interrupted,
+            (None, Ok(_)) => own.unwrap_or(Stop::Interrupted),
         })
     }
 

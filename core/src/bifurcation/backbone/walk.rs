@@ -12,6 +12,7 @@ use std::ops::ControlFlow;
 
 use super::modes::{Linearised, Mode};
 use super::oscillation::Equations;
+use crate::branches::leap::Leap;
 use crate::branches::point::Point;
 use crate::branches::progress::{Progress, Stage};
 use crate::cancel::Cancel;
@@ -75,7 +76,10 @@ pub(super) struct Found {
     pub(super) failure: Option<Result<f64, FlowError>>,
     /// The last position.
     pub(super) position: f64,
-    turned: bool,
+    /// Where it was taken up again.
+    pub(super) leaps: Vec<Leap>,
+    /// Why the part that was followed last is not followed on, where the walk does not say so itself.
+    ended: Option<Stop>,
     interrupted: bool,
 }
 
@@ -111,7 +115,8 @@ impl Walk<'_> {
             };
             let before = found.points.len();
             if let Some(u) = one_way.near(from)? {
-                found.turned = false;
+                let reason = found.stop(&outcome);
+                found.ended = None;
                 let beyond = FollowOptions {
                     from,
                     points: left,
@@ -119,11 +124,14 @@ impl Walk<'_> {
                 };
                 let again = self.once(u, beyond, &mut found);
                 if found.points.len() > before {
+                    found
+                        .leaps
+                        .extend(reason.map(|reason| Leap::new(before, reason)));
                     outcome = again;
                     ahead = AHEAD;
                     continue;
                 }
-                found.turned = true;
+                found.ended = reason;
             }
             ahead *= 2.0;
         }
@@ -157,14 +165,19 @@ impl Walk<'_> {
                 let is_other =
                     begun > 0 && is_first && mode.is_some_and(|mode| !mode.is_like(&at.u, &first));
                 if is_other || one_way && !is_first && is_back {
-                    found.turned = true;
+                    let value = found.position;
+                    found.ended = Some(Stop::TurnedBack { value });
                     return Continue::Break(Halt::Stop);
                 }
                 let point = match equations.read(&at.u) {
-                    Ok((point, apart)) if apart <= RETURNED => point,
+                    Ok((mut point, apart)) if apart <= RETURNED => {
+                        point.error = Some(apart);
+                        point
+                    }
                     // What is unstable does not come back for rounding.
-                    Ok(_) if one_way && !found.points.is_empty() => {
-                        found.turned = true;
+                    Ok((_, by)) if one_way && !found.points.is_empty() => {
+                        let value = found.position;
+                        found.ended = Some(Stop::Missed { value, by });
                         return Continue::Break(Halt::Stop);
                     }
                     failed => {
@@ -189,20 +202,30 @@ impl Walk<'_> {
 impl Found {
     /// Whether the curve may be taken up beyond where it ended.
     fn goes_on(&self, outcome: &Result<Outcome, NewtonError>) -> bool {
+        let stop = self.stop(outcome);
         let ended = matches!(
-            outcome,
-            Ok(Outcome::Stopped(
-                Stop::LeftAtStart | Stop::StepTooShort { .. }
-            ))
+            stop,
+            Some(
+                Stop::LeftAtStart
+                    | Stop::StepTooShort { .. }
+                    | Stop::TurnedBack { .. }
+                    | Stop::Missed { .. }
+            )
         );
-        !self.points.is_empty()
-            && !self.interrupted
-            && self.failure.is_none()
-            && (self.turned || ended)
+        !self.points.is_empty() && !self.interrupted && self.failure.is_none() && ended
     }
 
-    /// Whether it turned back where it could not be taken up again.
-    pub(super) fn has_turned(&self) -> bool {
-        self.turned
+    /// Why it ended; none where the walk did not begin or was interrupted.
+    pub(super) fn stop(&self, outcome: &Result<Outcome, NewtonError>) -> Option<Stop> {
+        let own = match outcome {
+            // Where a later part begins is no end of the range.
+            Ok(Outcome::Stopped(Stop::LeftAtStart)) if !self.leaps.is_empty() => {
+                let value = self.position;
+                Some(Stop::TurnedBack { value })
+            }
+            Ok(Outcome::Stopped(stop)) => Some(*stop),
+            _ => None,
+        };
+        self.ended.or(own)
     }
 }

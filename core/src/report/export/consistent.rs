@@ -32,6 +32,11 @@ impl Branch {
             && [0, model.pieces.len()].contains(&model.force_units.len())
             && (self.varied == "omega" || parameter(&self.varied))
             && after.all(|after| after <= points)
+            && self.leaps.is_sorted_by(|a, b| a.after < b.after)
+            && self
+                .leaps
+                .iter()
+                .all(|leap| (1..points).contains(&leap.after))
     }
 
     /// Where an orbit, one of events too, has not as many numbers as those of the model.

@@ -222,6 +222,7 @@ impl PhaseResonance {
             points,
             events: Vec::new(),
             turns: Vec::new(),
+            leaps: Vec::new(),
             begin: None,
             stopped,
             statistics,
