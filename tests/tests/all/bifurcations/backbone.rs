@@ -258,6 +258,53 @@ fn two_masses_move_as_one() {
     }
 }
 
+hertzian::oscillator! {
+    /// Two masses between three springs of one, the first with a cubic spring to the ground besides: the example of Kerschen, Peeters, Golinval and
+    /// Vakakis (2009), Mech. Syst. Signal Process. 23, section 3.
+    Kerschen(x, y) {
+        ddot(x) + 2*x - y + 0.5*x^3 = 0;
+        ddot(y) + 2*y - x = 0;
+    }
+}
+
+/// The largest position of the first mass along the first mode before it turns back: by another integrator (DOP853 of scipy) and a parabola.
+const TURNS: f64 = 8.605_725;
+
+/// Whether a curve turned back there, but for the last step.
+fn has_turned(stop: Stop) -> bool {
+    matches!(stop, Stop::TurnedBack { value } if (TURNS - 1e-3..TURNS + 1e-6).contains(&value))
+}
+
+/// The curve of the first mode turns back: it is taken up beyond, and no line leads there.
+#[test]
+fn a_curve_that_turns_back_is_taken_up_again() {
+    let request = FreeOscillation::of(&Kerschen {}).mode(1).along("x");
+    let curve = request.clone().to(10.0).run().unwrap();
+    assert_eq!(curve.stopped, Stop::ReachedEnd);
+    let [leap] = &curve.leaps[..] else {
+        panic!("{:?}", curve.leaps);
+    };
+    assert!(has_turned(leap.reason), "{}", leap.reason);
+    let sizes: Vec<usize> = curve.parts().map(<[Point]>::len).collect();
+    assert_eq!(sizes, [leap.after, curve.points.len() - leap.after]);
+    let [before, behind] = [leap.after - 1, leap.after].map(|index| &curve.points[index]);
+    assert!(position(before) < TURNS && TURNS < position(behind));
+    let place = |point: &Point| [point.value, point.peak_to_peak()];
+    let runs = curve.runs();
+    let both = [before, behind].map(place);
+    assert!(runs.iter().any(|run| run.points.last() == Some(&both[0])));
+    assert!(runs.iter().any(|run| run.points.first() == Some(&both[1])));
+    let with_both = |run: &&hertzian::chart::Run| both.iter().all(|own| run.points.contains(own));
+    assert_eq!(runs.iter().filter(with_both).count(), 0);
+    // Every motion comes back.
+    let errors = curve.points.iter().map(|point| point.error);
+    assert!(errors.flatten().all(|error| error < 1e-9));
+    // There is nothing beyond that is asked for.
+    let ended = request.to(8.61).run().unwrap();
+    assert!(has_turned(ended.stopped), "{}", ended.stopped);
+    assert!(ended.leaps.is_empty());
+}
+
 /// What is not there is said.
 #[test]
 fn a_mode_that_is_not_there_is_said() {
