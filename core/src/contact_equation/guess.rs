@@ -123,7 +123,9 @@ impl<'g> Guess<'g> {
         other.write(phase, &mut there);
         let pace = self.rate() / other.rate();
         let (positions, velocities) = there.split_at_mut(state.len() / 2);
-        velocities.iter_mut().for_each(|v| *v *= pace);
+        for v in &mut *velocities {
+            *v *= pace;
+        }
         // (2)
         for (x, there) in state.iter_mut().zip(positions.iter().chain(&*velocities)) {
             *x += part * (there - *x);
