@@ -69,7 +69,8 @@ impl fmt::Display for EventKind {
 /// unit circle suggests.
 ///
 /// Of kind [`EventKind::Fold`] it is a place where the branch turned back, but not through a fold. A sampled balance of a force
-/// that jumps does this, and so does an orbit that grazes a level.
+/// that jumps does this, and so does an orbit that grazes a level. Where its test function is not a number, the step could not be looked at: its first
+/// orbit has no place in the unknowns of its last one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -350,11 +350,13 @@ pub fn describe(text: &mut String, number: usize, branch: &DiagramBranch) -> fmt
         writeln!(text, "  {}", branch.branch.describe(event))?;
     }
     for turn in &branch.branch.turns {
-        writeln!(
-            text,
-            "  unlocated at {}: a test function changes its sign, and was not driven to zero",
-            of_varied(&branch.branch, format_args!("{:.6}", turn.value))
-        )?;
+        let why = if turn.test.is_nan() {
+            "orbits beside it tell, and it was not found"
+        } else {
+            "a test function changes its sign, and was not driven to zero"
+        };
+        let value = of_varied(&branch.branch, format_args!("{:.6}", turn.value));
+        writeln!(text, "  unlocated at {value}: {why}")?;
     }
     Ok(())
 }

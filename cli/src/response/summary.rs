@@ -225,6 +225,9 @@ fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
         let varied = &branch.varied;
         let value = of_varied(branch, export::rounded(turn.value, 6));
         match turn.kind {
+            EventKind::Fold if turn.test.is_nan() => {
+                format!("{varied} {value}, a turn in a step that could not be looked at")
+            }
             EventKind::Fold => {
                 format!("{varied} {value}, not confirmed as a fold: the slope jumps")
             }

@@ -336,6 +336,7 @@ impl Branch {
         let ends = self.leaps.iter().map(|leap| leap.after);
         let ends = ends.chain([self.points.len()]);
         ends.scan(0, |from, to| {
+            let to = to.clamp(*from, self.points.len());
             let part = self.points.get(*from..to).unwrap_or_default();
             *from = to;
             Some(part)

@@ -13,9 +13,10 @@ use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::error::{Error, ErrorKind};
 
-/// The way to a value is halved so often at most, and with it orbits are looked for so often.
+/// The way to a value is halved so often at most, and with it orbits are looked for so often: as often in each of many ways.
 const HALVINGS: usize = 7;
 const LOOKS: usize = 60;
+const LOOKS_EACH: usize = 15;
 /// What was found by other ways is no farther from both neighbours than they are apart, to this factor.
 const ASIDE: f64 = 1.5;
 /// The reason for which other ways are tried.
@@ -59,7 +60,7 @@ pub(crate) fn orbits_at(
         let lies_inside = |event: &Event| (event.point.value - a) * (event.point.value - b) < 0.0;
         let mut left = Left {
             ways,
-            looks: LOOKS,
+            looks: LOOKS.max(LOOKS_EACH * (1 + ways)),
             alike: !branch.events.iter().any(lies_inside),
         };
         divided(&mut between, ends, value, HALVINGS, &mut left)

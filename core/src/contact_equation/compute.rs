@@ -105,35 +105,52 @@ pub(super) fn orbit_near(
     read(run, u, value)
 }
 
-/// What is read off an orbit, which is solved for again where its nodes overlook something.
+/// What is read off an orbit, which is solved for again with more nodes where its own overlook something, or its errors ask for them.
 ///
 /// # Errors
-/// If it is lost then.
+/// If it is lost where nodes overlook something.
 fn read(mut run: Run<'_>, mut u: Vec<f64>, value: f64) -> Result<Point, Error> {
+    let mut found = None;
     loop {
-        let mut newton = Newton::new(&run.equations);
+        let newton = Newton::new(&run.equations);
         let at = CurvePoint {
             scale: solve::scale_at(&newton, &u),
             tangent: vec![0.0; u.len() - 1].into_iter().chain([1.0]).collect(),
             u,
         };
-        let read = run.read(&at).ok_or(lost(value))?;
-        let Some(overlooked) = read.overlooks else {
-            return Ok(read.point);
+        let Some(read) = run.read(&at) else {
+            return found.ok_or_else(|| lost(value).into());
         };
-        // Nodes that step over a narrow place of a law have not seen the orbit.
-        run.resolution = overlooked.needed.ok_or(lost(value))?;
-        (run.equations, u) = run.replanned(&at.u).ok_or(lost(value))?;
-        newton = Newton::new(&run.equations);
-        solve::at_value(&mut run.equations, &mut newton, &mut u, AT_START)
-            .map_err(|reason| OrbitError::NoStart { value, reason })?;
-        run.clear_finer();
-        // What nodes see now may have other switches.
-        run.equations.compute(&u, false);
-        if run.equations.failed || run.fits(&u) == Fits::No {
-            return Err(lost(value).into());
-        }
+        let wanted = match read.overlooks {
+            // Nodes that step over a narrow place of a law have not seen the orbit.
+            Some(overlooked) => overlooked.needed,
+            None => {
+                let wanted = run.is_coarse(&read.point).then_some(run.resolution + 1);
+                found = Some(read.point);
+                wanted
+            }
+        };
+        let finer = wanted.and_then(|wanted| solved_with(&mut run, &at.u, wanted));
+        let Some(finer) = finer else {
+            // What was found stands, with its error.
+            return found.ok_or_else(|| lost(value).into());
+        };
+        u = finer;
     }
+}
+
+/// An orbit solved for again with another resolution, in equations that fit it.
+fn solved_with(run: &mut Run<'_>, u: &[f64], resolution: usize) -> Option<Vec<f64>> {
+    run.resolution = resolution;
+    let (equations, mut u) = run.replanned(u)?;
+    run.equations = equations;
+    let mut newton = Newton::new(&run.equations);
+    solve::at_value(&mut run.equations, &mut newton, &mut u, AT_START).ok()?;
+    run.clear_finer();
+    // What nodes see now may have other switches.
+    run.equations.compute(&u, false);
+    let fits = !run.equations.failed && run.fits(&u) != Fits::No;
+    fits.then_some(u)
 }
 
 fn lost(value: f64) -> OrbitError {

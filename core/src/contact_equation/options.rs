@@ -15,7 +15,8 @@ use crate::orbit::observe::Accuracy;
 /// Nodes follow the [tolerance](crate::FrequencyResponse::tolerance); events are located again with more nodes until their value is known
 /// to nine digits. A branch that begins at one of its events has its first orbit from [`Shooting`](crate::Shooting), and is followed by the contact
 /// equation from there. Where that finds no equations of its first orbit, shooting follows it, and is its
-/// [method](crate::Branch::method). Orbits at a value are computed by shooting.
+/// [method](crate::Branch::method). Orbits at a value are looked for near the motion
+/// on the chord of their neighbours, and by shooting where that leads to another limb.
 ///
 /// ```
 /// use hertzian::{ContactEquation, FrequencyResponse};

@@ -152,7 +152,21 @@ impl Branch {
             return Ok(point.clone());
         }
         let following = self.followed()?;
-        by_shooting::completed(following.request(), following.shooting(), point)
+        let plain = self.of_motion(point);
+        let found = by_shooting::completed(following.request(), following.shooting(), &plain)?;
+        Ok(Point {
+            error: point.error,
+            ..found
+        })
+    }
+
+    /// An orbit as its motion is looked at. A free oscillation states how far it misses its beginning: nothing holds its phase, so that no orbit is looked
+    /// for that comes nearer.
+    pub(super) fn of_motion(&self, point: &Point) -> Point {
+        Point {
+            error: point.error.filter(|_| !self.further.is_backbone),
+            ..point.clone()
+        }
     }
 
     /// [Completes](Self::complete) every orbit of the branch, as tables that have more than extremes take it.

@@ -125,7 +125,12 @@ impl Branch {
     fn read_signal(&self, source: Source, point: &Point) -> Result<Reading, Error> {
         // The series of an orbit that is known by its states was cut off, and its motion was not.
         if let (false, Ok(following)) = (point.orbit.states.is_empty(), self.followed()) {
-            return by_shooting::reading(following.request(), following.shooting(), point, source);
+            return by_shooting::reading(
+                following.request(),
+                following.shooting(),
+                &self.of_motion(point),
+                source,
+            );
         }
         // A coordinate is its series: that takes no model.
         if let Source::Coordinate(index) = source
@@ -138,7 +143,12 @@ impl Branch {
             return of_series(system, point, source);
         }
         let following = self.followed()?;
-        by_shooting::reading(following.request(), following.shooting(), point, source)
+        by_shooting::reading(
+            following.request(),
+            following.shooting(),
+            &self.of_motion(point),
+            source,
+        )
     }
 }
 

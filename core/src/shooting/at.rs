@@ -102,8 +102,12 @@ pub(crate) fn between(
     compute::read(problem, first, value)
 }
 
-/// Whether two orbits are one, as far as they are known.
-pub(crate) fn is_same(a: &Point, b: &Point) -> bool {
+fn is_same(a: &Point, b: &Point) -> bool {
+    is_within(a, b, 0.0)
+}
+
+/// Whether the states of two orbits differ by rounding, or by so much more, as a part of the orbit's size.
+pub(crate) fn is_within(a: &Point, b: &Point, more: f64) -> bool {
     let size = a.size();
     let (first, second) = (a.orbit.state(), b.orbit.state());
     let mut pairs = first.iter().zip(&second).enumerate();
@@ -113,6 +117,6 @@ pub(crate) fn is_same(a: &Point, b: &Point) -> bool {
         } else {
             a.orbit.omega
         };
-        (x - y).abs() <= SAME * size * unit
+        (x - y).abs() <= (SAME + more) * size * unit
     })
 }

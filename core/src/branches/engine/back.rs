@@ -10,7 +10,7 @@ use crate::continuation::problem::Norm;
 /// A step that went too far is made again with this part of its length.
 const SHORTER: f64 = 0.3;
 /// A gap that would turn at this height beyond its level, in units of half of its range, does not pass it.
-const STOPPED: f64 = 1e-12;
+pub(crate) const STOPPED: f64 = 1e-12;
 
 impl Engine {
     /// Why no equations are found behind the last point.

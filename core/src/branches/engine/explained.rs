@@ -1,7 +1,7 @@
 //! What is said where multipliers cross the unit circle and no event was located.
 
 use super::Engine;
-use super::grazing::Bent;
+use super::grazing::{Bent, Gaps};
 use crate::branches::extreme::{Bend, crossings, passed};
 use crate::branches::moduli;
 use crate::branches::point::Point;
@@ -10,6 +10,13 @@ use crate::branches::record::Kept;
 use crate::branches::stability::Verdict;
 use crate::continuation::follow::CurvePoint;
 use crate::event::{EventKind, Turn};
+
+/// A point that has no place in the unknowns of the next one, with the extremes of its gaps where touches are looked for.
+#[derive(Debug)]
+pub(super) struct Displaced {
+    pub(super) point: CurvePoint,
+    pub(super) gaps: Option<Gaps>,
+}
 
 impl Engine {
     /// Multipliers that cross the unit circle in the last step, at no place that was found, do so where a level is touched in it at which they
@@ -31,17 +38,19 @@ impl Engine {
 
     /// Says what happened in a step that could not be looked at, as far as its ends tell: that a level was touched, or that the branch turned.
     pub(super) fn say_unseen(&mut self, problem: &mut dyn BranchProblem, at: &CurvePoint) {
-        let Some(before) = self.displaced.take() else {
+        let Some(Displaced { point, gaps }) = self.displaced.take() else {
             return;
         };
-        let Some(next) = self.gaps_at(problem, at) else {
-            return;
-        };
-        let ends = [&before.extremes, &next.extremes].map(|extremes| &extremes[..]);
-        let [here, there] = ends.map(crossings);
-        let touched = here != there || !passed(ends[0], ends[1]).is_empty();
+        let touched = gaps.is_some_and(|before| {
+            let next = self.gaps_at(problem, at);
+            next.is_some_and(|next| {
+                let ends = [&before.extremes, &next.extremes].map(|extremes| &extremes[..]);
+                let [here, there] = ends.map(crossings);
+                here != there || !passed(ends[0], ends[1]).is_empty()
+            })
+        });
         let vanishing = problem.vanishing();
-        let slopes = [&before.point, at].map(|at| at.known_slope(vanishing));
+        let slopes = [&point, at].map(|at| at.known_slope(vanishing));
         let turned = matches!(slopes, [Some(here), Some(there)] if here * there < 0.0);
         let kind = match (touched, turned) {
             (true, turns) => EventKind::Grazing { turns },
@@ -50,7 +59,7 @@ impl Engine {
         };
         let turn = Turn {
             kind,
-            value: 0.5 * (before.point.parameter() + at.parameter()),
+            value: 0.5 * (point.parameter() + at.parameter()),
             test: f64::NAN,
             after: problem.points() - 1,
         };

@@ -43,6 +43,8 @@ mod tests;
 mod walk;
 mod zero;
 
+pub(crate) use back::STOPPED;
+use explained::Displaced;
 use grazing::Bent;
 use grazing::Gaps;
 use inside::distance;
@@ -116,7 +118,7 @@ struct Engine {
     /// What changed its sign in the last step at no place that was found.
     unlocated: Vec<Turn>,
     /// The point before the last step, where that cannot be looked at: the point has no place in the unknowns of the step's end.
-    displaced: Option<Gaps>,
+    displaced: Option<Displaced>,
 }
 
 /// Follows the branch from its start to its end.
@@ -316,10 +318,18 @@ impl Engine {
         let before = halted.previous.as_ref().filter(|_| problem.seeks_touches());
         let gaps = before.and_then(|before| self.gaps_at(problem, before));
         problem.remap(&mut resized);
-        if resized.previous.is_some() {
-            self.keep_gaps(gaps, resized.previous.as_ref());
-        } else if gaps.is_some() {
-            self.displaced = gaps;
+        match (&halted.previous, &resized.previous) {
+            (_, Some(there)) => {
+                self.keep_gaps(gaps, Some(there));
+                self.displaced = None;
+            }
+            (Some(point), None) => {
+                self.displaced = Some(Displaced {
+                    point: point.clone(),
+                    gaps,
+                });
+            }
+            (None, None) => {}
         }
         resized
     }

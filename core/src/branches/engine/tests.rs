@@ -56,6 +56,8 @@ struct Algebraic {
     shape: Shape,
     /// Whether `z` is an unknown.
     three: bool,
+    /// Behind the first fold other unknowns are asked for, in which the orbit before has no place.
+    displaces: bool,
     record: Record,
 }
 
@@ -64,6 +66,7 @@ impl Algebraic {
         Self {
             shape,
             three: false,
+            displaces: false,
             record: Record::default(),
         }
     }
@@ -165,6 +168,9 @@ impl BranchProblem for Algebraic {
     }
 
     fn read(&mut self, _: &mut Newton, at: &CurvePoint) -> Read {
+        if self.displaces && at.u[0] > -1.0 {
+            return Read::Refused;
+        }
         self.record.points.push(orbit(&at.u));
         // From here on, and for a while.
         if [20, 60].contains(&self.points()) {
@@ -195,6 +201,9 @@ impl BranchProblem for Algebraic {
             } else {
                 vector.remove(2);
             }
+        }
+        if std::mem::take(&mut self.displaces) {
+            halted.previous = None;
         }
     }
 
@@ -238,7 +247,10 @@ fn followed(from: f64, to: f64, start: Start) -> (Algebraic, Stop) {
 }
 
 fn followed_of(shape: Shape, from: f64, to: f64, start: Start) -> (Algebraic, Stop) {
-    let mut branch = Algebraic::of(shape);
+    followed_by(Algebraic::of(shape), from, to, start)
+}
+
+fn followed_by(mut branch: Algebraic, from: f64, to: f64, start: Start) -> (Algebraic, Stop) {
     let options = FollowOptions {
         from,
         to,
@@ -278,6 +290,28 @@ fn every_event_is_found_where_it_is() {
             );
         }
     }
+}
+
+/// A step whose first orbit has no place in the unknowns of its last one cannot be looked at: that the branch turned in it is said.
+#[test]
+fn a_turn_in_a_step_that_is_not_seen_is_said() {
+    let branch = Algebraic {
+        displaces: true,
+        ..Algebraic::of(cubic)
+    };
+    let (branch, stop) = followed_by(branch, -8.0, 8.0, Start::Near(vec![-2.4, 0.0, -8.0]));
+    assert_eq!(stop, Stop::ReachedEnd);
+    let [turn] = branch.record.turns[..] else {
+        panic!("{:?}", branch.record.turns);
+    };
+    assert!(turn.kind == EventKind::Fold && turn.test.is_nan());
+    // The cubic is two at its fold, and its orbits before and behind are known.
+    let ends = &branch.record.points[turn.after - 1..=turn.after];
+    assert!(ends[0].parameters[0] < -1.0 && ends[1].parameters[0] > -1.0);
+    assert!((turn.value - 2.0).abs() < 0.1, "{turn:?}");
+    let folds = branch.events().into_iter();
+    let folds: Vec<_> = folds.filter(|event| event.0 == EventKind::Fold).collect();
+    assert!(folds.len() == 1 && (folds[0].1 - 1.0).abs() < 1e-9);
 }
 
 /// Between the folds the branch has three solutions at a value.

@@ -8,7 +8,7 @@ use super::first_orbit::FirstOrbit;
 use super::resume_state::Rest;
 use crate::branches::branch_start::step_on_other_branch;
 use crate::branches::checkpoint::keep;
-use crate::branches::engine::{Search, Walk};
+use crate::branches::engine::{STOPPED, Search, Walk};
 use crate::branches::extreme::{self, Extreme};
 use crate::branches::moduli;
 use crate::branches::point::Point;
@@ -18,7 +18,7 @@ use crate::branches::problem::{
 use crate::branches::progress::{Progress, See};
 use crate::branches::record::Record;
 use crate::contact_equation::equations::Equations;
-use crate::contact_equation::problem::{FIRST, RESOLUTIONS};
+use crate::contact_equation::problem::FIRST;
 use crate::contact_equation::reading::ReadOrbit;
 use crate::contact_equation::run::Run;
 use crate::contact_equation::switches::fits::Fits;
@@ -42,9 +42,6 @@ pub(super) const SHORTENED: usize = 8;
 pub(super) const DISPLACED: usize = 3;
 /// Multipliers that may be wrong by more are not compared with one.
 const COARSE: f64 = 1e-3;
-/// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
-/// events are seen that are none.
-const MULTIPLIERS: f64 = 100.0;
 /// Parts of the tolerance below which fewer nodes do, and how many points are followed with more of them before fewer are tried: a number
 /// of nodes that was not enough is not tried again at once.
 const PLENTY: f64 = 1e-4;
@@ -301,7 +298,11 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
     /// Whether the step to an orbit is to be made again, shorter, since the equations that were prepared there have no place for the orbit before
     /// it: what happened in the step is looked for between points that both have a place in them.
     fn is_displaced(&mut self) -> bool {
-        if self.displaced >= DISPLACED || self.holds_last() {
+        let kept = std::mem::take(&mut self.kept);
+        // Where a gap hardly passes its level any more, no step is short enough.
+        let is_slow = !kept.is_empty() && self.run.slowest(&kept) < STOPPED;
+        self.kept = kept;
+        if is_slow || self.displaced >= DISPLACED || self.holds_last() {
             return false;
         }
         self.next = None;
@@ -310,25 +311,12 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         true
     }
 
-    /// How many times as large as the tolerance the errors of a point are.
-    fn excess(&self, point: &Point) -> f64 {
-        let sizes = point.stability.multipliers.iter().map(|m| m.norm());
-        let largest = sizes.fold(1.0, f64::max);
-        let asked = self.run.problem.asked.stability;
-        let spread = if asked { point.stability.error } else { 0.0 };
-        let errors = [point.error.unwrap_or(0.0), spread / (MULTIPLIERS * largest)];
-        errors[0].max(errors[1]) / self.run.problem.tolerance
-    }
-
     /// The resolution that the last error asks for.
     fn wanted(&self, point: &Point) -> usize {
         let now = self.run.resolution;
-        let error = self.excess(point);
-        // More nodes are of no use where no force is unknown.
-        let has_nodes = self.run.equations.skeleton.forces > 0;
-        if error > 1.0 && has_nodes && now + 1 < RESOLUTIONS.len() {
+        if self.run.is_coarse(point) {
             now + 1
-        } else if error < PLENTY && now > FIRST && self.held == 0 {
+        } else if self.run.excess(point) < PLENTY && now > FIRST && self.held == 0 {
             now - 1
         } else {
             now
@@ -344,7 +332,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let coarse = wanted > self.run.resolution;
         let again = !stuck && self.refused < REFUSALS;
         // As many nodes may do where panels end at the kinks of this orbit.
-        let fails = read.overlooks.is_none() && self.excess(&read.point) > 1.0;
+        let fails = read.overlooks.is_none() && self.run.excess(&read.point) > 1.0;
         let moved = fails && again && self.refused == 0 && self.run.has_moved_kinks();
         if moved && self.prepare_at_kinks(&at.u) {
             self.refused += 1;
@@ -647,6 +635,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
     fn remap(&mut self, halted: &mut Halted) {
         if std::mem::take(&mut self.passes_first) {
             halted.passes_first();
+            self.moved = None;
             self.before = None;
             return;
         }

@@ -11,8 +11,9 @@ use super::equations::setting::Frame;
 use super::linear_part::values::Contact;
 use super::orbit::gaps::{At, Gaps};
 use super::orbit::motion::Motion;
-use super::problem::ContactProblem;
+use super::problem::{ContactProblem, RESOLUTIONS};
 use super::reading::overlooked::Sharp;
+use crate::branches::point::Point;
 use crate::branches::record::Record;
 use crate::branches::recurrence::Recurrence;
 use crate::continuation::statistics::Statistics;
@@ -20,6 +21,10 @@ use crate::laws::generic::scales::Scales;
 
 /// Tangents in other unknowns are differences over so much of the largest entry.
 pub(super) const DIFFERENCE: f64 = 1e-5;
+
+/// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
+/// events are seen that are none.
+const MULTIPLIERS: f64 = 100.0;
 
 /// What a branch has gathered, and the equations that it is followed by.
 pub(super) struct Run<'r> {
@@ -62,6 +67,22 @@ impl<'r> Run<'r> {
             statistics: Statistics::default(),
             joined: None,
         }
+    }
+
+    /// How many times as large as the tolerance the errors of a point are.
+    pub(super) fn excess(&self, point: &Point) -> f64 {
+        let sizes = point.stability.multipliers.iter().map(|m| m.norm());
+        let largest = sizes.fold(1.0, f64::max);
+        let asked = self.problem.asked.stability;
+        let spread = if asked { point.stability.error } else { 0.0 };
+        let errors = [point.error.unwrap_or(0.0), spread / (MULTIPLIERS * largest)];
+        errors[0].max(errors[1]) / self.problem.tolerance
+    }
+
+    /// Whether the errors of a point ask for more nodes, and there are more. They are of no use where no force is unknown.
+    pub(super) fn is_coarse(&self, point: &Point) -> bool {
+        let has_nodes = self.equations.skeleton.forces > 0;
+        has_nodes && self.resolution + 1 < RESOLUTIONS.len() && self.excess(point) > 1.0
     }
 
     /// What it remembers beside its equations: what was varied where finer ones were made, and what these have said.

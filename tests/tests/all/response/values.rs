@@ -110,6 +110,25 @@ fn every_solution_is_returned_beside_a_fold() {
     }
 }
 
+/// Orbits at a value have as many nodes as the tolerance asks for, and not those that a search begins with.
+#[test]
+fn orbits_at_a_value_follow_the_tolerance() {
+    let request = FrequencyResponse::of(&CONTACT).from(0.6).to(0.9);
+    let exact = request.clone().by(Shooting::new()).tolerance(1e-12).run();
+    let exact = exact.unwrap().at(0.7).unwrap();
+    for tolerance in [1e-6, 1e-10] {
+        let contact = request.clone().by(ContactEquation::new());
+        let found = contact.tolerance(tolerance).run().unwrap().at(0.7).unwrap();
+        assert_eq!(found.len(), exact.len());
+        for (orbit, exact) in found.iter().zip(&exact) {
+            let apart = (orbit.peak_to_peak() / exact.peak_to_peak() - 1.0).abs();
+            let stated = orbit.error.unwrap();
+            assert!(stated <= tolerance, "{stated} for {tolerance}");
+            assert!(apart <= stated + exact.error.unwrap(), "{apart} {stated}");
+        }
+    }
+}
+
 /// Values beside the folds of a branch that bends to smaller ones, at some distances, with how many orbits there are.
 fn beside_folds(branch: &Branch, distances: &[f64]) -> Vec<(f64, usize)> {
     let folds: Vec<f64> = branch.folds().map(|fold| fold.point.value).collect();
