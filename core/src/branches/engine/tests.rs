@@ -202,7 +202,8 @@ impl BranchProblem for Algebraic {
                 vector.remove(2);
             }
         }
-        if std::mem::take(&mut self.displaces) {
+        if self.displaces && halted.point.u[0] > -1.0 {
+            self.displaces = false;
             halted.previous = None;
         }
     }
