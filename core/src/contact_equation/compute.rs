@@ -121,14 +121,13 @@ fn read(mut run: Run<'_>, mut u: Vec<f64>, value: f64) -> Result<Point, Error> {
         let Some(read) = run.read(&at) else {
             return found.ok_or_else(|| lost(value).into());
         };
-        let wanted = match read.overlooks {
+        let wanted = if let Some(overlooked) = read.overlooks {
             // Nodes that step over a narrow place of a law have not seen the orbit.
-            Some(overlooked) => overlooked.needed,
-            None => {
-                let wanted = run.is_coarse(&read.point).then_some(run.resolution + 1);
-                found = Some(read.point);
-                wanted
-            }
+            overlooked.needed
+        } else {
+            let wanted = run.is_coarse(&read.point).then_some(run.resolution + 1);
+            found = Some(read.point);
+            wanted
         };
         let finer = wanted.and_then(|wanted| solved_with(&mut run, &at.u, wanted));
         let Some(finer) = finer else {
