@@ -161,7 +161,7 @@ impl Backbone {
                 let [from, to] = sides;
                 let _ = writeln!(
                     text,
-                    "           not followed from omega = {from:.4} to {to:.4}: {}",
+                    "           not followed from omega = {from:.8} to {to:.8}: {}",
                     leap.reason
                 );
             }

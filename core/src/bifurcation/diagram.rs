@@ -6,11 +6,13 @@
 use std::collections::VecDeque;
 use std::fmt;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::cover::Searched;
 use super::matching;
 use crate::branches::branch::Branch;
+use crate::branches::checkpoint::Keep;
 use crate::branches::point::Event;
 use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::Stop;
@@ -285,12 +287,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
     pub(super) fn add(&mut self, origin: Origin, depth: usize, branch: Branch) {
         self.points_left = self.points_left.saturating_sub(branch.points.len());
         let number = self.diagram.branches.len();
-        let begins = (0..branch.events.len()).filter(|&index| match branch.events[index].kind {
-            EventKind::PeriodDoubling | EventKind::SymmetryBreaking => true,
-            EventKind::BranchPoint => !is_joint(&branch, index, self.range),
-            _ => false,
-        });
-        self.queue.extend(begins.map(|index| (number, index)));
+        self.enqueue(number, &branch, 0);
         let mirrored = self.is_mirrored(origin);
         self.diagram.branches.push(DiagramBranch {
             origin,
@@ -298,6 +295,55 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             branch,
             mirrored,
         });
+    }
+
+    /// What begins at the events of a branch, from one of them on, is to be followed.
+    fn enqueue(&mut self, number: usize, branch: &Branch, first: usize) {
+        let begins =
+            (first..branch.events.len()).filter(|&index| match branch.events[index].kind {
+                EventKind::PeriodDoubling | EventKind::SymmetryBreaking => true,
+                EventKind::BranchPoint => !is_joint(branch, index, self.range),
+                _ => false,
+            });
+        self.queue.extend(begins.map(|index| (number, index)));
+    }
+
+    /// Goes on with the first branch where it met its limit of orbits, with those that the others have left, and with what begins at it.
+    pub(super) fn go_on(&mut self, keep: Option<Arc<dyn Keep>>) {
+        if self.observer.interrupted || self.points_left == 0 || !self.is_cut() {
+            return;
+        }
+        let first = &self.diagram.branches[0].branch;
+        let [points, events] = [first.points.len(), first.events.len()];
+        let resume = first.resume().kept_by(keep);
+        let resume = resume.cancel(&self.response.request.cancel);
+        let resume = resume.max_points(points + self.points_left);
+        // Where it cannot go on, it ends at its limit as it does.
+        let Ok(longer) = resume.run_with(|progress| self.observer.see(progress)) else {
+            return;
+        };
+        let more = longer.points.len().saturating_sub(points);
+        self.points_left = self.points_left.saturating_sub(more);
+        self.enqueue(0, &longer, events);
+        self.diagram.branches[0].branch = longer;
+        self.exhaust();
+    }
+
+    /// Whether the first branch met its limit of orbits, and none was met that goes on from there.
+    fn is_cut(&self) -> bool {
+        let [first, others @ ..] = &self.diagram.branches[..] else {
+            return false;
+        };
+        let limited = matches!(first.branch.stopped, Stop::PointLimit { .. });
+        let last = first.branch.points.last();
+        let Some(last) = last.filter(|_| limited && first.origin == Origin::First) else {
+            return false;
+        };
+        let states = matching::at_periods(&last.orbit);
+        !others.iter().any(|other| {
+            let begin = self.diagram.begin(other);
+            matching::contains(&self.response, &other.branch, begin, last.value, &states)
+        })
     }
 
     /// Whether a branch is the mirror image of another one: the other side of where a symmetry breaks, and what begins on it.

@@ -34,6 +34,11 @@ fn beginnings(orbit: &Orbit) -> Vec<Vec<f64>> {
     if !orbit.states.is_empty() {
         return orbit.states().map(<[f64]>::to_vec).collect();
     }
+    at_periods(orbit)
+}
+
+/// States at the beginnings of the periods of an orbit.
+pub(super) fn at_periods(orbit: &Orbit) -> Vec<Vec<f64>> {
     let period = TAU / orbit.base / orbit.period as f64;
     let state = |number: usize| {
         let time = number as f64 * period;

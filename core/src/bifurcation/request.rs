@@ -139,7 +139,8 @@ impl<M: OrbitMethod> Bifurcations<M> {
         /// No more branches than this. Default: 64.
         max_branches(branches: usize) { self.branches = branches }
 
-        /// No more orbits than this on all branches together. Default: 50000.
+        /// No more orbits than this on all branches together. Default: 50000. The first branch has half of them at first, and goes on with what all others
+        /// leave.
         max_points(points: usize) { self.points = points }
 
         /// Branches other than the first may go beyond the ends of the range by this part of it, as far as the equations
@@ -234,7 +235,8 @@ impl<M: OrbitMethod> Bifurcations<M> {
         self.check()?;
         self.check_searched([from, to])?;
         let mut seen = Observer::new(&mut visit);
-        let first = self.response.clone().max_points(self.points.max(2));
+        // Half of them at first, so that one which creeps leaves some for all others.
+        let first = self.response.clone().max_points((self.points / 2).max(2));
         let found = first.run_with(|progress| seen.see(progress));
         // Without a first branch the range may be covered by others.
         let optional = |error: &Error| {
@@ -277,6 +279,7 @@ impl<M: OrbitMethod> Bifurcations<M> {
         if let Some(settling) = self.settling.as_ref().filter(|settling| settling.solving) {
             search.scatter(settling, &self.settled_at);
         }
+        search.go_on(self.response.request.keep.clone());
         let mut diagram = search.diagram;
         if let Some(error) = none {
             if diagram.branches.is_empty() {

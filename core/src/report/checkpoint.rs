@@ -118,7 +118,7 @@ impl Resume<'_> {
     /// branch that goes on beyond its range the part that is new is kept.
     #[must_use]
     pub fn keep(self, path: impl AsRef<Path>) -> Self {
-        self.kept_by(Keeper::at(path.as_ref()))
+        self.kept_by(Some(Keeper::at(path.as_ref())))
     }
 }
 

@@ -123,13 +123,9 @@ impl Resume<'_> {
         cancel(cancel: &Cancel) { self.cancel = cancel.clone() }
     }
 
-    /// Keeps it by this.
-    #[cfg(feature = "serde")]
-    pub(crate) fn kept_by(self, keep: Arc<dyn Keep>) -> Self {
-        Self {
-            keep: Some(keep),
-            ..self
-        }
+    /// Keeps it by this, if by anything.
+    pub(crate) fn kept_by(self, keep: Option<Arc<dyn Keep>>) -> Self {
+        Self { keep, ..self }
     }
 
     /// Goes on.

@@ -19,10 +19,11 @@
 //! In a position `q_0` that is at rest too the energy is that of
 //!
 //! ```text
-//! E = (q - q_0)^T K (q - q_0) / 2 + sum_c integral from g_c(q_0) to g_c(q) of phi_c(g) - phi_c(g_c(q_0)) dg        (3)
+//! E = (q - q_0)^T K (q - q_0) / 2 + sum_c a_c integral from g_c(q_0) to g_c(q) of phi_c(g) - phi_c(g_c(q_0)) dg    (3)
 //! ```
 //!
-//! whose integrals end at levels, where forces go as powers: they are taken by a rule that does not mind.
+//! where `e_c = a_c d_c`, without which a force has no potential. The integrals end at levels, where forces go as powers: they are taken by a
+//! rule that does not mind.
 //!
 //! Source: Krylov and Bogoliubov (1947), Introduction to Non-Linear Mechanics, chapter XI (equivalent linearisation); Rosenberg (1966), Adv.
 //! Appl. Mech. 9 (normal modes of nonlinear systems, which begin at those of the linear one); Takahasi and Mori (1974), Publ. RIMS Kyoto Univ.
@@ -75,6 +76,32 @@ pub(super) struct Linearised {
     mass: DMatrix<f64>,
     stiffness: DMatrix<f64>,
     contacts: Vec<Contact>,
+}
+
+impl Contact {
+    /// `a_c` of (3).
+    ///
+    /// # Errors
+    /// If the force acts in another direction than the gap opens in.
+    fn part(&self) -> Result<f64, Error> {
+        let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let square = product(&self.along, &self.along);
+        if square == 0.0 {
+            // A gap that no coordinate opens does no work.
+            return Ok(0.0);
+        }
+        let part = product(&self.force, &self.along) / square;
+        let pairs = self.force.iter().zip(&self.along);
+        let off = pairs.fold(0.0, |most: f64, (e, d)| most.max((e - part * d).abs()));
+        let largest = self
+            .force
+            .iter()
+            .fold(0.0, |most: f64, e| most.max(e.abs()));
+        if off > SYMMETRIC * largest {
+            return Err(BifurcationError::NoPotential { off }.into());
+        }
+        Ok(part)
+    }
 }
 
 /// A mode.
@@ -246,13 +273,8 @@ impl Linearised {
             energy += 0.5 * by * force;
         }
         for contact in &self.contacts {
-            let pairs = contact.force.iter().zip(&contact.along);
-            let off = pairs.fold(0.0, |most: f64, (e, d)| most.max((e - d).abs()));
-            if off > 0.0 {
-                return Err(BifurcationError::NoPotential { off }.into());
-            }
             let opened = contact.along.iter().zip(&apart).map(|(d, q)| d * q);
-            energy += self.work(contact, opened.sum());
+            energy += contact.part()? * self.work(contact, opened.sum());
         }
         Ok(energy)
     }

@@ -305,6 +305,40 @@ fn a_curve_that_turns_back_is_taken_up_again() {
     assert!(ended.leaps.is_empty());
 }
 
+/// A force that a factor in an equation turns has a potential as well: the energy at rest is that of the springs and of `0.5*x^3`.
+#[test]
+fn a_force_with_a_factor_has_an_energy() {
+    let request = FreeOscillation::of(&Kerschen {}).mode(1).along("x");
+    let request = request.to(3.0);
+    let curve = request.run().unwrap();
+    let energies = request.energies(&curve).unwrap();
+    for (point, energy) in curve.points.iter().zip(energies) {
+        let [x, y] = [0, 1].map(|i| point.orbit.state()[i]);
+        let expected = x * x - x * y + y * y + 0.125 * x.powi(4);
+        assert!(
+            (energy / expected - 1.0).abs() < 1e-12,
+            "{energy} {expected}"
+        );
+    }
+}
+
+hertzian::oscillator! {
+    /// Two masses, one of which pushes the other and is not pushed back.
+    Following(x, y) {
+        ddot(x) + x + 0.1*(x - y)^3 = 0;
+        ddot(y) + 2*y + x^3 = 0;
+    }
+}
+
+/// A force without a reaction has no potential.
+#[test]
+fn a_force_without_a_reaction_has_no_energy() {
+    let curve = FreeOscillation::of(&Kerschen {}).mode(1).along("x").to(1.0);
+    let curve = curve.run().unwrap();
+    let energies = FreeOscillation::of(&Following {}).energies(&curve);
+    assert_eq!(energies.unwrap_err().kind(), ErrorKind::Model);
+}
+
 /// What is not there is said.
 #[test]
 fn a_mode_that_is_not_there_is_said() {

@@ -241,6 +241,34 @@ fn a_budget_is_kept_and_said() {
     assert!(said || cut);
 }
 
+/// The first branch leaves half of the orbits to those that begin at it, and has all that nobody else needs.
+#[test]
+fn a_first_branch_leaves_orbits_to_others() {
+    let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
+    let request = request.from(0.1).to(2.0);
+    let alone = request.clone().depth(0);
+    let whole = alone.run().unwrap();
+    let count = whole.branches[0].branch.points.len();
+    let enough = alone.max_points(count).run().unwrap();
+    assert_eq!(enough.branches.len(), 1);
+    assert_eq!(
+        enough.branches[0].branch.points,
+        whole.branches[0].branch.points
+    );
+    assert_eq!(
+        enough.branches[0].branch.events,
+        whole.branches[0].branch.events
+    );
+    assert_eq!(enough.branches[0].branch.stopped, Stop::ReachedEnd);
+    assert_eq!(enough.omitted.len(), whole.omitted.len());
+    let shared = request.depth(1).max_points(count).run().unwrap();
+    let [first, others @ ..] = &shared.branches[..] else {
+        panic!("no branch");
+    };
+    assert!(first.branch.points.len() < count);
+    assert!(!others.is_empty());
+}
+
 /// A caller that stops in the second branch gets the first one and that much of the second; the rest is named.
 #[test]
 fn an_interrupted_search_keeps_what_it_has() {
