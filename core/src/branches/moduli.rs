@@ -15,7 +15,8 @@ use nalgebra::{Complex, DMatrix};
 
 use super::point::Event;
 use crate::event::EventKind;
-use crate::numeric::spectrum::eigenvalues;
+use crate::numeric::leading;
+use crate::numeric::spectrum::{self, eigenvalues};
 
 /// No modulus is told from zero below the exponential of this.
 const LEAST: f64 = -30.0;
@@ -25,12 +26,23 @@ const REAL: f64 = 1e-5;
 const TOGETHER: f64 = 1e-6;
 /// Angles of one pair of multipliers differ by less.
 const ALIKE: f64 = 1e-5;
+/// So many times as large as what may be left out.
+const CLEAR: f64 = 1.2;
 /// Values that differ by this part are one, whatever their errors are.
 const SAME: f64 = 1e-10;
 
+/// Eigenvalues of a map, largest first: all of them, or of many states the [leading] ones.
+pub(crate) fn of_map(map: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    leading::leading(map).map_or_else(|| eigenvalues(map), spectrum::sort)
+}
+
 /// Multipliers over the whole period, of a map over one of its parts; largest first.
 pub(crate) fn multipliers(map: &DMatrix<f64>, parts: usize) -> Vec<Complex<f64>> {
-    let mut values = eigenvalues(map);
+    over(of_map(map), parts)
+}
+
+/// Multipliers over so many parts, of those over one.
+fn over(mut values: Vec<Complex<f64>>, parts: usize) -> Vec<Complex<f64>> {
     for value in &mut values {
         let of_part = *value;
         for _ in 1..parts {
@@ -38,6 +50,52 @@ pub(crate) fn multipliers(map: &DMatrix<f64>, parts: usize) -> Vec<Complex<f64>>
         }
     }
     values
+}
+
+/// The eigenvalues of the map that was asked for last: an orbit that was looked at is read after it.
+#[derive(Debug, Default)]
+pub(crate) struct LastMap {
+    known: Option<(DMatrix<f64>, Vec<Complex<f64>>)>,
+}
+
+impl LastMap {
+    /// As [`of_map`].
+    pub(crate) fn values(&mut self, map: &DMatrix<f64>) -> &[Complex<f64>] {
+        let known = self.known.take().filter(|(known, _)| known == map);
+        let known = known.unwrap_or_else(|| (map.clone(), of_map(map)));
+        &self.known.insert(known).1
+    }
+
+    /// As [`multipliers`].
+    pub(crate) fn multipliers(&mut self, map: &DMatrix<f64>, parts: usize) -> Vec<Complex<f64>> {
+        over(self.values(map).to_vec(), parts)
+    }
+}
+
+/// Largest distance between multipliers of a map of so many states and those of another approximation, each matched with its nearest. Where some are
+/// left out as small by one of both, those count that neither leaves out.
+pub(crate) fn distance(
+    multipliers: &[Complex<f64>],
+    others: &[Complex<f64>],
+    states: usize,
+) -> f64 {
+    if multipliers.len().min(others.len()) == states || multipliers.is_empty() {
+        return spectrum::distance(multipliers, others);
+    }
+    let least = CLEAR * leading::least(multipliers[0].norm());
+    let clear = multipliers.iter().filter(|m| m.norm() > least);
+    let clear: Vec<_> = clear.copied().collect();
+    let mut free = others.to_vec();
+    let mut largest = 0.0_f64;
+    for multiplier in &clear {
+        let apart = |place: usize| (free[place] - multiplier).norm();
+        let nearest = (0..free.len()).min_by(|&i, &j| apart(i).total_cmp(&apart(j)));
+        let Some(place) = nearest else {
+            return f64::INFINITY;
+        };
+        largest = largest.max((free.swap_remove(place) - multiplier).norm());
+    }
+    largest
 }
 
 /// (1) of the multiplier at a place, those that are missing being too small to be told from zero; not a number where nothing is known.

@@ -5,6 +5,7 @@ pub(crate) mod estimate;
 pub(crate) mod exponential;
 pub mod fourier;
 pub(crate) mod golden;
+pub(crate) mod leading;
 pub(crate) mod linear;
 pub mod power;
 pub(crate) mod roots;

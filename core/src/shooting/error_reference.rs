@@ -14,10 +14,9 @@ use nalgebra::{Complex, DMatrix};
 
 use super::equations::{Equations, Frame, Span};
 use super::problem::ShootingProblem;
-use crate::branches::moduli::multipliers;
+use crate::branches::moduli::{self, multipliers};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::error::Error;
-use crate::numeric::spectrum::{distance, eigenvalues};
 use crate::time::Work;
 
 /// Ratio of the two tolerances.
@@ -120,7 +119,7 @@ impl ErrorReference {
         let parts = self.equations.span.recurrence.parts;
         let size = map.norm().max(1.0);
         // The equations are those of the part that is followed.
-        let nearest = eigenvalues(map).into_iter().map(|m| (m - 1.0).norm());
+        let nearest = moduli::of_map(map).into_iter().map(|m| (m - 1.0).norm());
         let nearest = nearest.fold(f64::INFINITY, f64::min);
         // Where a multiplier is one, an error moves the orbit by its root only: the branch bends away.
         let states = self.noise * size / nearest.max(self.noise.sqrt());
@@ -140,7 +139,7 @@ pub(super) fn moved(map: &DMatrix<f64>, found: &[Complex<f64>], parts: usize, by
             let alternating = if (i + j).is_multiple_of(2) { 1.0 } else { sign };
             map[(i, j)] + by * alternating
         });
-        distance(found, &multipliers(&entries, parts))
+        moduli::distance(found, &multipliers(&entries, parts), map.nrows())
     };
     disturbed(1.0).max(disturbed(-1.0))
 }

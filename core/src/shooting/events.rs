@@ -14,14 +14,13 @@ use super::run::{Run, observe, relative};
 use super::test_functions::{Test, Tests};
 use crate::branches::engine::{self, Aim};
 use crate::branches::extreme;
-use crate::branches::moduli::multipliers;
+use crate::branches::moduli::{self, multipliers};
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{Change, Root, Touch, Zero};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{AsProblem, Problem};
 use crate::event::{EventKind, Turn};
-use crate::numeric::spectrum::{distance, eigenvalues};
 use crate::orbit::observe::Accuracy;
 
 /// What rounding leaves in the value of a touch, where the distance from a level has a root to be told apart from.
@@ -59,7 +58,7 @@ pub(super) fn others(equations: &mut Equations, u: &[f64], critical: f64) -> f64
     let Ok(map) = equations.map(u, &mut |_| {}) else {
         return 1.0;
     };
-    let mut distances: Vec<f64> = eigenvalues(&map)
+    let mut distances: Vec<f64> = moduli::of_map(&map)
         .iter()
         .map(|m| (m - critical).norm())
         .collect();
@@ -269,7 +268,7 @@ fn compared(
             EventKind::NeimarkSacker => (m.norm() - 1.0).abs(),
             _ => (m - critical).norm(),
         });
-        let spread = part * distance(&found, &there)
+        let spread = part * moduli::distance(&found, &there, map.nrows())
             + nearest.fold(f64::INFINITY, f64::min)
             + error_reference::moved(&map, &found, parts, noise * map.norm().max(1.0));
         read.stability = problem.stability(found, spread);

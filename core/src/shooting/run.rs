@@ -13,7 +13,7 @@ use super::resume_state::Rest;
 use super::signals::Reader;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
-use crate::branches::moduli::multipliers;
+use crate::branches::moduli::{self, multipliers};
 use crate::branches::observed::{Motion, Observed};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
@@ -27,7 +27,6 @@ use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::event::EventKind;
 use crate::model::request::RequestError;
-use crate::numeric::spectrum::distance;
 use crate::orbit::observe::Accuracy;
 use crate::orbit::stability::Stability;
 use crate::time::MotionError;
@@ -233,7 +232,7 @@ impl<'r> Run<'r> {
         let mut error = in_states * self.size;
         if let Some(corrected) = &corrected {
             let other = reference.multipliers_beside(corrected);
-            spread += reference.part * distance(&found, &other);
+            spread += reference.part * moduli::distance(&found, &other, map.nrows());
             error += reference.part * reference.equations.apart(u, &corrected.u);
         } else {
             spread = f64::INFINITY;

@@ -21,7 +21,7 @@ use nalgebra::{Complex, DMatrix};
 use crate::branches::moduli;
 use crate::branches::problem::{self as engine, Watched};
 use crate::event::EventKind;
-use crate::numeric::spectrum::eigenvalues;
+use crate::numeric::leading;
 
 /// Beside the largest multiplier, one that is near the unit circle is known to its rounding. Where that is so large, determinants have
 /// signs by chance.
@@ -40,6 +40,8 @@ pub(crate) struct Tests {
     minus: f64,
     /// `det(M + I)`
     plus: f64,
+    /// No logarithm of a modulus is told from what is less.
+    least: f64,
     /// Of `M`, largest modulus first; none where nothing is known.
     pub(crate) multipliers: Vec<Complex<f64>>,
 }
@@ -87,19 +89,46 @@ impl Test {
 
 impl Tests {
     pub(crate) fn of(map: Option<&DMatrix<f64>>, slope: f64) -> Self {
-        let multipliers = map.map_or_else(Vec::new, eigenvalues);
+        let multipliers = map.map_or_else(Vec::new, moduli::of_map);
+        Self::with(map, multipliers, slope)
+    }
+
+    /// Of a map whose eigenvalues are known, all of them or those that are not small.
+    pub(crate) fn with(
+        map: Option<&DMatrix<f64>>,
+        multipliers: Vec<Complex<f64>>,
+        slope: f64,
+    ) -> Self {
         let largest = multipliers.first().map_or(0.0, |m| m.norm());
         let resolved = map.filter(|_| f64::EPSILON * largest < UNRESOLVED);
+        let states = map.map_or(0, DMatrix::nrows);
+        let left_out = states.saturating_sub(multipliers.len());
         let determinant = |shift: f64| {
             resolved.map_or(f64::NAN, |map| {
-                let shifted = map + DMatrix::identity(map.nrows(), map.ncols()) * shift;
-                shifted.determinant()
+                if left_out == 0 || multipliers.is_empty() {
+                    let shifted = map + DMatrix::identity(states, states) * shift;
+                    return shifted.determinant();
+                }
+                // Of those that are left out, which are small, the sign alone.
+                let sign = if left_out.is_multiple_of(2) {
+                    1.0
+                } else {
+                    shift
+                };
+                let factors = multipliers.iter().map(|m| m + shift);
+                sign * factors.product::<Complex<f64>>().re
             })
+        };
+        let least = if left_out == 0 {
+            f64::NEG_INFINITY
+        } else {
+            leading::least(largest).ln()
         };
         Self {
             slope,
             minus: determinant(-1.0),
             plus: determinant(1.0),
+            least,
             multipliers,
         }
     }
@@ -109,7 +138,15 @@ impl Tests {
             Test::Slope => self.slope,
             Test::Bordered => self.minus / self.slope,
             Test::Plus => self.plus,
-            Test::Modulus(place) => moduli::logarithm(&self.multipliers, place),
+            Test::Modulus(place) => {
+                let logarithm = moduli::logarithm(&self.multipliers, place);
+                // What is not known stays so.
+                if logarithm < self.least {
+                    self.least
+                } else {
+                    logarithm
+                }
+            }
         }
     }
 

@@ -18,6 +18,10 @@ use nalgebra::Complex;
 use super::seen::Seen;
 use crate::branches::problem::TestValue;
 
+/// Of more pairs than this those are looked at whose logarithms are not so far below the largest one, or below the circle if the largest is outside.
+const FEW: usize = 8;
+const SMALL: f64 = -1.0;
+
 /// Two pairs of multipliers of one orbit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Meeting {
@@ -28,13 +32,18 @@ pub(super) struct Meeting {
 }
 
 impl Meeting {
-    /// All of an orbit.
+    /// All of an orbit; where there are many, those of the larger ones.
     pub(super) fn all(seen: &Seen, noise: f64) -> Vec<Self> {
         let pairs = seen.pairs.as_deref().unwrap_or_default();
+        let largest = pairs.iter().map(|pair| pair.re).reduce(f64::max);
+        let few = pairs.len() <= FEW;
+        let least = largest.map_or(f64::NAN, |largest| largest.min(0.0) + SMALL);
+        let counts = |pair: &&Complex<f64>| few || pair.re > least;
+        let pairs: Vec<_> = pairs.iter().filter(counts).collect();
         let mut all = Vec::new();
         for (i, one) in pairs.iter().enumerate() {
             all.extend(pairs[..i].iter().map(|other| Self {
-                pairs: [*one, *other],
+                pairs: [**one, **other],
                 noise,
             }));
         }

@@ -18,7 +18,7 @@ use nalgebra::DMatrix;
 
 use super::event_tangent;
 use super::method::VANISHED;
-use crate::branches::moduli::multipliers;
+use crate::branches::moduli::{self, multipliers};
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{Touch, Zero};
 use crate::branches::solve;
@@ -33,7 +33,6 @@ use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::event::EventKind;
 use crate::numeric::linear::dot;
 use crate::numeric::roots::{self, Place};
-use crate::numeric::spectrum::distance;
 use crate::shooting::test_functions::{Test, Tests};
 
 /// An event is known well enough when more nodes change its value by this part of it.
@@ -197,7 +196,7 @@ fn at_event(
             _ => (m - critical).norm(),
         });
         let nearest = nearest.fold(f64::INFINITY, f64::min);
-        let spread = distance(&found, &multipliers(coarse, parts)) + nearest;
+        let spread = moduli::distance(&found, &multipliers(coarse, parts), map.nrows()) + nearest;
         point.stability = Stability::of(found, spread);
     }
     point

@@ -204,7 +204,10 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             let last = self.last.as_ref();
             let known = |last: &&Last| last.value == at.parameter() && !last.map.is_empty();
             let tests = match (own, last.filter(known)) {
-                (Some(own), _) => Tests::of(Some(&own), divisor(at)),
+                (Some(own), _) => {
+                    let values = self.run.last_map.values(&own).to_vec();
+                    Tests::with(Some(&own), values, divisor(at))
+                }
                 // The last orbit may have other equations, in which it was looked at.
                 (None, Some(last)) => last.tests(),
                 (None, None) => {
@@ -298,11 +301,14 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
     /// Whether the step to an orbit is to be made again, shorter, since the equations that were prepared there have no place for the orbit before
     /// it: what happened in the step is looked for between points that both have a place in them.
     fn is_displaced(&mut self) -> bool {
+        if self.displaced >= DISPLACED || self.holds_last() {
+            return false;
+        }
         let kept = std::mem::take(&mut self.kept);
         // Where a gap hardly passes its level any more, no step is short enough.
         let is_slow = !kept.is_empty() && self.run.slowest(&kept) < STOPPED;
         self.kept = kept;
-        if is_slow || self.displaced >= DISPLACED || self.holds_last() {
+        if is_slow {
             return false;
         }
         self.next = None;
@@ -426,7 +432,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
 
     fn keep_point(&mut self, at: &CurvePoint, read: ReadOrbit) -> bool {
         let ReadOrbit { point, map, .. } = read;
-        let tests = Tests::of(map.as_ref(), divisor(at));
+        let values = map.as_ref().map(|map| self.run.last_map.values(map));
+        let values = values.map_or_else(Vec::new, <[_]>::to_vec);
+        let tests = Tests::with(map.as_ref(), values, divisor(at));
         self.last = Some(Last {
             value: at.parameter(),
             slope: divisor(at),

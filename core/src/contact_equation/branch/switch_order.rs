@@ -8,6 +8,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::events;
+use crate::branches::moduli;
 use crate::branches::point::Event;
 use crate::branches::problem::Zero;
 use crate::contact_equation::equations::Equations;
@@ -16,7 +17,6 @@ use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::event::EventKind;
 use crate::numeric::linear::dot;
-use crate::numeric::spectrum::eigenvalues;
 
 /// What the order changes is small.
 const OPTIONS: NewtonOptions = NewtonOptions {
@@ -104,7 +104,7 @@ impl Run<'_> {
             return 1.0;
         };
         let distance = |m: &Complex<f64>| (m - critical).norm();
-        let mut distances: Vec<f64> = eigenvalues(&map).iter().map(distance).collect();
+        let mut distances: Vec<f64> = moduli::of_map(&map).iter().map(distance).collect();
         distances.sort_by(f64::total_cmp);
         let product: f64 = distances.iter().skip(1).product();
         product.max(1.0) * distances.last().copied().unwrap_or(1.0).max(1.0)

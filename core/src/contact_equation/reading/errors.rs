@@ -13,7 +13,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::branches::moduli::multipliers;
+use crate::branches::moduli::{self, multipliers};
 use crate::branches::observed::{EXTREMES, Motion as Extent, Observed};
 use crate::branches::point::Point;
 use crate::contact_equation::equations::Equations;
@@ -22,7 +22,6 @@ use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::run::{DIFFERENCE, Run};
 use crate::continuation::follow::CurvePoint;
 use crate::numeric::roots::Place;
-use crate::numeric::spectrum::distance;
 use crate::orbit::observe::Accuracy;
 
 /// Roundings of an output in a configuration.
@@ -67,8 +66,9 @@ impl Run<'_> {
             let parts = self.equations.skeleton.recurrence().parts;
             let there = self.equations.map(&moved);
             there.map_or(f64::INFINITY, |there| {
-                let [here, there] = [map, &there].map(|map| multipliers(map, parts));
-                distance(&here, &there)
+                let here = self.last_map.multipliers(map, parts);
+                let there = multipliers(&there, parts);
+                moduli::distance(&here, &there, map.nrows())
             })
         } else {
             self.equations.compute(&moved, false);

@@ -24,7 +24,7 @@ pub(super) mod overlooked;
 mod plain_outputs;
 mod stretch;
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use self::errors::{Steepness, everywhere};
 use self::overlooked::Overlooked;
@@ -36,13 +36,12 @@ use super::run::error_estimate::{SAFETY, SCREENED, Screened};
 use super::skeleton::interval::Interval;
 use super::skeleton::phases::Opening;
 use super::skeleton::placement::Told;
-use crate::branches::moduli::multipliers;
+use crate::branches::moduli::{self, multipliers};
 use crate::branches::observed::{Motion as Extent, Observed, part_of};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::branches::stability::{Stability, Verdict};
 use crate::continuation::follow::CurvePoint;
-use crate::numeric::spectrum::distance;
 use crate::orbit::observe::Accuracy;
 use crate::shooting::signals::Rounded;
 
@@ -195,7 +194,8 @@ impl Run<'_> {
         let mut spread = 0.0;
         if let Some(map) = &map {
             let parts = self.equations.skeleton.recurrence().parts;
-            (point.stability, spread) = stability(map, finer_map.as_ref(), parts, moved);
+            let found = self.last_map.multipliers(map, parts);
+            (point.stability, spread) = stability(found, map, finer_map.as_ref(), parts, moved);
         }
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
@@ -258,7 +258,7 @@ impl Run<'_> {
         point.error = Some(stated(error));
         if let Some(map) = &map {
             let parts = self.equations.skeleton.recurrence().parts;
-            point.stability = Stability::of(multipliers(map, parts), spread);
+            point.stability = Stability::of(self.last_map.multipliers(map, parts), spread);
             if point.stability.verdict == Verdict::Undecided {
                 return self.read(at);
             }
@@ -411,16 +411,16 @@ fn stated(error: f64) -> f64 {
     }
 }
 
-/// The multipliers of a map over one of so many parts, with what a finer solution changes in them and how far they move along the branch to
+/// The multipliers that were found of a map over one of so many parts, with what a finer solution changes in them and how far they move along the branch to
 /// its value; and the most that it changes in them or in the map.
 fn stability(
+    found: Vec<Complex<f64>>,
     map: &DMatrix<f64>,
     finer: Option<&DMatrix<f64>>,
     parts: usize,
     along: f64,
 ) -> (Stability, f64) {
-    let found = multipliers(map, parts);
-    let apart = |finer| along + distance(&found, &multipliers(finer, parts));
+    let apart = |finer| along + moduli::distance(&found, &multipliers(finer, parts), map.nrows());
     let moved = finer.map_or(f64::INFINITY, apart);
     let of_map = |finer: &DMatrix<f64>| parts as f64 * (map - finer).norm();
     let spread = finer.map_or(f64::INFINITY, |finer| moved.max(of_map(finer)));

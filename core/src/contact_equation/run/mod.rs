@@ -13,6 +13,7 @@ use super::orbit::gaps::{At, Gaps};
 use super::orbit::motion::Motion;
 use super::problem::{ContactProblem, RESOLUTIONS};
 use super::reading::overlooked::Sharp;
+use crate::branches::moduli::LastMap;
 use crate::branches::point::Point;
 use crate::branches::record::Record;
 use crate::branches::recurrence::Recurrence;
@@ -37,6 +38,7 @@ pub(super) struct Run<'r> {
     pub(super) finer: Option<Equations>,
     /// What the last of them has said.
     pub(super) screened: Option<Screened>,
+    pub(super) last_map: LastMap,
     pub(super) record: Record,
     pub(super) statistics: Statistics,
     /// What the branch has met.
@@ -63,6 +65,7 @@ impl<'r> Run<'r> {
             equations,
             finer: None,
             screened: None,
+            last_map: LastMap::default(),
             record: Record::default(),
             statistics: Statistics::default(),
             joined: None,
