@@ -149,6 +149,9 @@ pub(crate) struct Halted {
     pub(crate) first: CurvePoint,
     /// It has gone against its first direction.
     pub(super) turned: bool,
+    /// It is at its first point, which was solved for, and leads to the end of the range.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(super) ahead: bool,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) step: f64,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
@@ -167,6 +170,7 @@ impl Halted {
             step,
             previous: None,
             before: None,
+            ahead: false,
             ended: None,
             ..self
         }

@@ -3,7 +3,7 @@
 use super::closing::closes;
 use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop};
 use super::problem::Problem;
-use super::stepper::Stepper;
+use super::stepper::{Direction, Stepper};
 use crate::continuation::newton::{Newton, NewtonError};
 
 /// An end of the range that is not reached by a step as short as this is not reached by shorter ones.
@@ -22,6 +22,8 @@ pub(crate) struct Position {
     first: CurvePoint,
     /// It has gone against its first direction, as every closed curve does somewhere: its tangents are zero in sum.
     turned: bool,
+    /// Nothing is known of its direction but that it leads to the end of the range: it is at its first point, which was solved for.
+    ahead: bool,
     /// Number of points before the last one.
     count: usize,
     /// The last point is the end.
@@ -40,17 +42,26 @@ impl Position {
             Start::Near(u) => {
                 let mut stepper = Stepper::new(problem, options, u);
                 let point = stepper.first(problem, newton)?;
-                Ok(Self::at(stepper, point))
+                Ok(Self {
+                    ahead: true,
+                    ..Self::at(stepper, point)
+                })
             }
             Start::Along(along) => {
                 let mut stepper = Stepper::new(problem, options, along.u.clone());
-                let point = stepper.again(problem, newton, &along, false)?;
+                let direction = Direction::Along;
+                let point = stepper.again(problem, newton, &along, false, direction)?;
                 Ok(Self::at(stepper, point))
             }
             Start::At(mut halted) => {
                 let mut stepper = Stepper::of(problem, options, &mut halted);
                 let at_end = halted.ended.is_some_and(|stop| stop != Stop::Closed);
-                let point = stepper.again(problem, newton, &halted.point, at_end)?;
+                let direction = if halted.ahead {
+                    Direction::Ahead
+                } else {
+                    Direction::Along
+                };
+                let point = stepper.again(problem, newton, &halted.point, at_end, direction)?;
                 Ok(Self::of(stepper, Halted { point, ..*halted }))
             }
             Start::Onward(mut halted) => {
@@ -68,6 +79,7 @@ impl Position {
             previous: halted.previous,
             first: halted.first,
             turned: halted.turned,
+            ahead: halted.ahead,
             count: halted.count,
             ended: halted.ended,
         }
@@ -81,6 +93,7 @@ impl Position {
             point,
             previous: None,
             turned: false,
+            ahead: false,
             count: 0,
             ended: None,
         }
@@ -108,6 +121,7 @@ impl Position {
             return Some(stop);
         }
         self.count += 1;
+        self.ahead = false;
         let points = self.stepper.options.points;
         (self.count >= points).then_some(Stop::PointLimit { points })
     }
@@ -190,6 +204,7 @@ impl Position {
             before: self.stepper.before.clone(),
             first: self.first.clone(),
             turned: self.turned,
+            ahead: self.ahead,
             step: self.stepper.step,
             largest: self.stepper.largest,
             count: self.count,
@@ -211,6 +226,7 @@ impl Position {
             before: None,
             first: self.first,
             turned: self.turned,
+            ahead: self.ahead,
             step: steps.initial,
             largest: self.stepper.largest,
             count,

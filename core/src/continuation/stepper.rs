@@ -9,6 +9,15 @@ use crate::continuation::newton::{Border, Newton, NewtonError};
 /// Least scale of what oscillates, in sizes of what rounding makes of an update.
 const ROUNDINGS: f64 = 1e3;
 
+/// Which way a curve is followed from a point that is corrected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Direction {
+    /// As the tangent that it has.
+    Along,
+    /// To the end of the range: where the orbit is resolved better its tangent may be another one.
+    Ahead,
+}
+
 /// What makes the steps; its buffers are reused.
 pub(super) struct Stepper {
     pub(super) options: FollowOptions,
@@ -61,6 +70,7 @@ impl Stepper {
         newton: &mut Newton,
         point: &CurvePoint,
         at_end: bool,
+        direction: Direction,
     ) -> Result<CurvePoint, NewtonError> {
         self.scale = point.scale;
         if at_end || point.parameter() == self.options.from {
@@ -80,7 +90,7 @@ impl Stepper {
         let along = newton
             .norm()
             .product(point.scale, &again.tangent, &point.tangent);
-        let ahead = if along == 0.0 {
+        let ahead = if along == 0.0 || direction == Direction::Ahead {
             again.parameter_slope() * (self.options.to - self.options.from)
         } else {
             along

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use hertzian::time::stroboscope::Stroboscope;
 use hertzian::time::{self, Tangent};
-use hertzian::{FrequencyResponse, Shooting, System};
+use hertzian::{ContactEquation, FrequencyResponse, Shooting, Stop, System};
 use hertzian_tests::random::Random;
 
 hertzian::oscillator! {
@@ -45,6 +45,34 @@ fn a_gear_pair_finds_its_flank() {
             .orbit(omega)
             .unwrap();
         assert!((cycle.peak_to_peak() / exact - 1.0).abs() < 1e-8);
+    }
+}
+
+hertzian::oscillator! {
+    /// A stiffness that comes back after five periods of two, of which few nodes resolve little.
+    Slow(x) {
+        param unsteady;
+        ddot(x) + 0.1*dot(x) + x + x^3 + unsteady*x^2*cos(2/5*omega*t) = 0.3*cos(omega*t);
+    }
+}
+
+/// Where the first orbit is resolved better its tangent may be another one, which leads to the end of the range all the same.
+#[test]
+fn a_branch_leads_into_its_range_however_coarse_its_first_orbit_was() {
+    for unsteady in [1e-3, 0.1] {
+        let model = Slow { unsteady };
+        let request = FrequencyResponse::of(&model).from(0.5).to(0.7);
+        let branch = request.clone().by(ContactEquation::new()).run().unwrap();
+        assert_eq!(branch.stopped, Stop::ReachedEnd);
+        let values = branch.points.windows(2);
+        assert!(values.clone().all(|pair| pair[0].value < pair[1].value));
+        let [found] = &branch.at(0.6).unwrap()[..] else {
+            panic!("one orbit at each value");
+        };
+        let exact = request.by(Shooting::new()).orbit(0.6).unwrap();
+        let off = (found.peak_to_peak() / exact.peak_to_peak() - 1.0).abs();
+        let error = found.error.unwrap() + exact.error.unwrap();
+        assert!(off <= error, "{off:e} {error:e}");
     }
 }
 
