@@ -20,6 +20,8 @@ use crate::time;
 
 /// Branches beyond this many are not followed.
 const BRANCHES: usize = 64;
+/// From so many orbits on, the first branch has half of them at first.
+const MANY: usize = 2000;
 /// Orbits of all branches together.
 const POINTS: usize = 50_000;
 /// Tolerance of the flow by which motions settle, where it is not in closed form.
@@ -139,8 +141,8 @@ impl<M: OrbitMethod> Bifurcations<M> {
         /// No more branches than this. Default: 64.
         max_branches(branches: usize) { self.branches = branches }
 
-        /// No more orbits than this on all branches together. Default: 50000. The first branch has half of them at first, and goes on with what all others
-        /// leave.
+        /// No more orbits than this on all branches together. Default: 50000. Of 2000 or more the first branch has half at first, and goes on with
+        /// what all others leave.
         max_points(points: usize) { self.points = points }
 
         /// Branches other than the first may go beyond the ends of the range by this part of it, as far as the equations
@@ -235,8 +237,13 @@ impl<M: OrbitMethod> Bifurcations<M> {
         self.check()?;
         self.check_searched([from, to])?;
         let mut seen = Observer::new(&mut visit);
-        // Half of them at first, so that one which creeps leaves some for all others.
-        let first = self.response.clone().max_points((self.points / 2).max(2));
+        // One that creeps leaves some for all others.
+        let points = if self.points >= MANY {
+            self.points / 2
+        } else {
+            self.points.max(2)
+        };
+        let first = self.response.clone().max_points(points);
         let found = first.run_with(|progress| seen.see(progress));
         // Without a first branch the range may be covered by others.
         let optional = |error: &Error| {

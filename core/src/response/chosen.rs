@@ -6,11 +6,13 @@
 //! for. So laws and the tolerance tell which method is quicker; what was measured is in DESIGN.md.
 //!
 //! Where the stiffness of a force is unbounded on both sides of a level, a branch bends beside a touch of it so sharply that the contact equation
-//! takes many steps there, or is lost; shooting passes it.
+//! takes many steps there, or is lost; shooting passes it. So it is where motions without contacts grow by many digits within a period
+//! ([`growing`](super::growing)).
 //!
 //! The contact equation has no equation for a system that nothing holds, may miss a first orbit, and may end where its equations fit no
 //! further orbit. There the balance is tried, which was asked for every branch before there was a choice.
 
+use super::growing::grows;
 use super::in_turn::{Either, First};
 use super::kind::OrbitMethodKind;
 use super::sealed::Follow;
@@ -45,7 +47,8 @@ const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 /// [asked for](crate::FrequencyResponse::by): the [contact equation](ContactEquation) where a law opens, that is has a piece without force, or
 /// has a corner or a jump at a level, and the [harmonic balance](HarmonicBalance) where every force is smooth. At a tolerance of 1e-8 or below it
 /// is the contact equation wherever a force is another function on the other side of a level. Where the stiffness of a law is unbounded on both
-/// sides of a level, as of `sgn(x)*|x|^0.6`, it is [shooting](Shooting). Where the contact equation or shooting has no equations for the
+/// sides of a level, as of `sgn(x)*|x|^0.6`, it is [shooting](Shooting), and so it is in place of the contact equation where motions of
+/// the linear part grow by six digits within a period, as those of a buckled beam between stops at a low frequency. Where the contact equation or shooting has no equations for the
 /// system, finds no first orbit, or leads no further, the balance is tried: [`Branch::method`] says what a branch
 /// was followed by.
 ///
@@ -97,6 +100,8 @@ pub(super) enum Choice {
         /// Name of the first law of which it is one.
         law: String,
     },
+    /// A force is not smooth, and without its contacts the system falls away within a period.
+    Growing,
     /// Every force is smooth, one is another function on the other side of a level, and so many digits are asked for that this matters.
     ToManyDigits {
         /// Name of the first law of which it is one.
@@ -114,22 +119,24 @@ impl Choice {
         let mut at = |end: f64| match request.variable() {
             Ok(Variable::Parameter(index)) => {
                 values[index] = end;
-                Self::at(system, &values, omega, request.tolerance)
+                Self::at(system, &values, omega, request)
             }
-            _ => Self::at(system, &values, end, request.tolerance),
+            _ => Self::at(system, &values, end, request),
         };
         let Some((from, to)) = request.from.zip(request.to) else {
-            return Self::at(system, &request.parameters(), omega, request.tolerance);
+            return Self::at(system, &request.parameters(), omega, request);
         };
         match [at(from), at(to)] {
             [steep @ Self::Shooting { .. }, _] | [_, steep @ Self::Shooting { .. }] => steep,
+            [Self::Growing, _] | [_, Self::Growing] => Self::Growing,
             [Self::HarmonicBalance, other] => other,
             [found, _] => found,
         }
     }
 
     /// By laws at values of the parameters and at a frequency.
-    fn at(system: &dyn System, values: &[f64], omega: f64, tolerance: f64) -> Self {
+    fn at(system: &dyn System, values: &[f64], omega: f64, request: &Request) -> Self {
+        let tolerance = request.tolerance;
         let layout = Layout::of(system);
         let mut coefficients = vec![0.0; layout.coefficients];
         system.coefficients(values, omega, &mut coefficients);
@@ -163,14 +170,19 @@ impl Choice {
             let law = law.facts().name.to_string();
             Some(Self::ToManyDigits { law })
         });
-        choice.unwrap_or(Self::HarmonicBalance)
+        let choice = choice.unwrap_or(Self::HarmonicBalance);
+        let grows = || grows(system, &layout, &coefficients, omega, request.period());
+        if choice.method() == OrbitMethodKind::ContactEquation && grows() {
+            return Self::Growing;
+        }
+        choice
     }
 
     /// The method, as [`Branch::method`] has it.
     pub(super) fn method(&self) -> OrbitMethodKind {
         match self {
             Self::HarmonicBalance => OrbitMethodKind::HarmonicBalance,
-            Self::Shooting { .. } => OrbitMethodKind::Shooting,
+            Self::Shooting { .. } | Self::Growing => OrbitMethodKind::Shooting,
             Self::ContactEquation { .. } | Self::ToManyDigits { .. } => {
                 OrbitMethodKind::ContactEquation
             }
@@ -183,6 +195,9 @@ impl Choice {
             Self::HarmonicBalance => "every force is smooth".to_owned(),
             Self::Shooting { law } => {
                 format!("the stiffness of law `{law}` is unbounded on both sides of a level")
+            }
+            Self::Growing => {
+                "motions grow by many digits within a period without contacts".to_owned()
             }
             Self::ContactEquation { law, opens: true } => format!("law `{law}` opens"),
             Self::ContactEquation { law, opens: false } => format!("law `{law}` has a corner"),
@@ -290,7 +305,7 @@ impl Chosen {
         };
         match choice {
             Choice::HarmonicBalance => find(&self.balance),
-            Choice::Shooting { .. } => {
+            Choice::Shooting { .. } | Choice::Growing => {
                 let shooting = Shooting::new().accurate_in(accuracy);
                 find(&Either::of(First::Shooting(shooting), balance))
             }

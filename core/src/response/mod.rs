@@ -8,6 +8,7 @@ mod by_contact_equation;
 mod by_shooting;
 mod chosen;
 mod following;
+mod growing;
 mod in_turn;
 mod kind;
 mod multipliers;

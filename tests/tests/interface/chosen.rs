@@ -98,6 +98,46 @@ fn laws_tell_the_method() {
     }
 }
 
+hertzian::oscillator! {
+    /// A buckled beam between stops falls away from the middle.
+    Buckled(x) {
+        law stop(gap) { gap > 0 => 5*gap^1.5, else => 0 }
+        ddot(x) + 0.25*dot(x) - x + stop(x - 1) - stop(-x - 1) = 0.1*cos(omega*t);
+    }
+}
+
+/// Without its stops the beam grows by `exp(0.8828 * 2 pi / omega)` in a period.
+#[test]
+fn what_grows_within_a_period_is_followed_by_shooting() {
+    let request = FrequencyResponse::of(&Buckled {});
+    let quick = request.clone().from(1.5).to(1.0);
+    assert_eq!(quick.choice(), OrbitMethodKind::ContactEquation);
+    let slow = request.clone().from(0.3).to(0.1);
+    assert_eq!(slow.choice(), OrbitMethodKind::Shooting);
+    let why = "motions grow by many digits within a period without contacts";
+    assert_eq!(slow.reason(), why);
+    let branch = slow.run().unwrap();
+    assert_eq!(branch.method(), Some(OrbitMethodKind::Shooting));
+    assert_eq!(branch.stopped, Stop::ReachedEnd);
+}
+
+/// What rounding grows to is in the errors that the contact equation states.
+#[test]
+fn what_rounding_grows_to_is_stated() {
+    let request = FrequencyResponse::of(&Buckled {}).tolerance(1e-10);
+    for omega in [0.6, 0.4, 0.3] {
+        let range = request.clone().from(omega).to(0.9 * omega).max_points(2);
+        let found = range.clone().by(ContactEquation::new()).run().unwrap();
+        let exact = range.by(Shooting::new()).run().unwrap();
+        let [found, exact] = [&found, &exact].map(|branch| &branch.points[0]);
+        let off = (found.peak_to_peak() / exact.peak_to_peak() - 1.0).abs();
+        let errors = [found, exact].map(|point| point.error.unwrap());
+        assert!(off <= errors[0] + errors[1], "{omega}: {off:e} {errors:?}");
+        let grown = f64::EPSILON * (0.8828 * std::f64::consts::TAU / omega).exp();
+        assert!(errors[0] >= grown, "{omega}: {errors:?}");
+    }
+}
+
 /// Without multipliers a loss of symmetry shows in the equations of the balance alone.
 #[test]
 fn steep_laws_without_multipliers_are_of_the_balance() {

@@ -179,6 +179,16 @@ impl Block {
         [1.0, -1.0].map(|sign| [0, 1].map(|i| 0.5 * (x[i] + sign * turned[i] / self.root)))
     }
 
+    /// The exponent of what grows; zero where nothing does.
+    pub(in crate::contact_equation) fn growth(&self) -> f64 {
+        let fastest = if self.square > 0.0 {
+            self.exponents[0]
+        } else {
+            self.mean
+        };
+        fastest.max(0.0)
+    }
+
     /// The exponent of what decays most slowly; zero where it grows.
     pub(in crate::contact_equation) fn slowest(&self) -> f64 {
         let slowest = if self.square > 0.0 {

@@ -24,6 +24,8 @@ use crate::continuation::follow::CurvePoint;
 use crate::numeric::roots::Place;
 use crate::orbit::observe::Accuracy;
 
+/// Roundings of states at the beginning, of which finer equations have as many.
+const GROWN: f64 = 100.0;
 /// Roundings of an output in a configuration.
 const ROUNDINGS: f64 = 8.0;
 /// Phases at which two motions are compared.
@@ -93,19 +95,30 @@ impl Run<'_> {
 
     /// How much of an output is rounding of the states of the last pass.
     pub(in crate::contact_equation) fn noise(&self, point: &Point) -> f64 {
-        match self.accuracy() {
-            Accuracy::Output(output) => {
-                let others = self.outputs(&self.equations, point.value, true);
-                let changed = self.changed(point, &others);
-                if self.equations.configurations.is_empty() {
-                    return changed;
+        let motions = point.observed.motions.iter();
+        let farthest = motions.map(Extent::farthest).fold(0.0, f64::max);
+        let grown = self.grown() * farthest;
+        grown
+            + match self.accuracy() {
+                Accuracy::Output(output) => {
+                    let others = self.outputs(&self.equations, point.value, true);
+                    let changed = self.changed(point, &others);
+                    if self.equations.configurations.is_empty() {
+                        return changed;
+                    }
+                    // States of configurations are taken over and given back: twice as many roundings, of which finer equations show none.
+                    let own = point.observed.outputs.get(output);
+                    2.0 * changed + ROUNDINGS * f64::EPSILON * own.map_or(0.0, Extent::farthest)
                 }
-                // States of configurations are taken over and given back: twice as many roundings, of which finer equations show none.
-                let own = point.observed.outputs.get(output);
-                2.0 * changed + ROUNDINGS * f64::EPSILON * own.map_or(0.0, Extent::farthest)
+                Accuracy::Coordinates | Accuracy::Coordinate(_) => 0.0,
             }
-            Accuracy::Coordinates | Accuracy::Coordinate(_) => 0.0,
-        }
+    }
+
+    /// What rounding of the states at the beginning of a period has come to at its end, relative to them, where motions of the linear part grow.
+    pub(in crate::contact_equation) fn grown(&self) -> f64 {
+        let blocks = self.equations.values.linear.blocks.iter();
+        let growth = blocks.map(|block| block.growth()).fold(0.0, f64::max);
+        GROWN * f64::EPSILON * (growth * self.equations.skeleton.length).exp_m1()
     }
 
     /// How far the output that the error is of is from that among others.

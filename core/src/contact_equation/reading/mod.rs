@@ -195,6 +195,8 @@ impl Run<'_> {
         if let Some(map) = &map {
             let parts = self.equations.skeleton.recurrence().parts;
             let found = self.last_map.multipliers(map, parts);
+            let rounding = self.grown() * parts as f64 * map.norm().max(1.0);
+            let moved = moved + rounding;
             (point.stability, spread) = stability(found, map, finer_map.as_ref(), parts, moved);
         }
         self.screened = Some(Screened {
