@@ -35,6 +35,16 @@ impl Gap {
         self.base = base;
     }
 
+    /// Coordinate, wave and coefficient of every term of `d`.
+    pub(crate) fn direction(&self) -> impl Iterator<Item = (usize, Wave, f64)> {
+        self.direction.iter().copied()
+    }
+
+    /// The same of `delta`, without coordinate.
+    pub(crate) fn offset(&self) -> impl Iterator<Item = (Wave, f64)> {
+        self.offset.iter().copied()
+    }
+
     /// The gap and its rate.
     pub(crate) fn at(&self, phase: f64, state: &[f64]) -> (f64, f64) {
         let (q, v) = state.split_at(state.len() / 2);

@@ -6,6 +6,7 @@
 use std::cell::{OnceCell, RefCell};
 
 use super::extremes::{Sampled, extremes_of_coordinates, extremes_of_gaps};
+use super::fast::{Fast, FastRoom};
 use super::forced::Forced;
 use crate::contact_equation::collocation::partway::Partway;
 use crate::contact_equation::equations::Equations;
@@ -27,6 +28,8 @@ pub(in crate::contact_equation) struct Motion<'e> {
     room: RefCell<Room>,
     /// Made when it is asked for.
     sampled: OnceCell<Vec<Sampled>>,
+    /// Pairs that are too fast for polynomials, interval by interval.
+    fast: Vec<OnceCell<Fast>>,
 }
 
 /// Room for one instant.
@@ -39,8 +42,8 @@ pub(super) struct Room {
     own: Vec<f64>,
     pub(super) partway: Partway,
     pub(super) kernels: Found,
-    pub(super) rung: Vec<f64>,
     pub(super) slow: Vec<f64>,
+    pub(super) fast: FastRoom,
 }
 
 impl<'e> Motion<'e> {
@@ -54,13 +57,14 @@ impl<'e> Motion<'e> {
             own: states(),
             partway: Partway::default(),
             kernels: Found::default(),
-            rung: Vec::new(),
             slow: Vec::new(),
+            fast: FastRoom::default(),
         };
         Self {
             equations,
             room: RefCell::new(room),
             sampled: OnceCell::new(),
+            fast: equations.passed.iter().map(|_| OnceCell::new()).collect(),
         }
     }
 
@@ -136,7 +140,8 @@ impl<'e> Motion<'e> {
             }
         }
         if !passed.forced.is_empty() {
-            Forced::new(self.equations, interval, psi, room).add(room);
+            let fast = self.fast[interval].get_or_init(|| Fast::of(self, interval));
+            Forced::new(self.equations, interval, psi, room).add(fast, room);
         }
         values.add_resonant(from, time, &mut room.states);
         if let Some(of) = configuration {
