@@ -9,6 +9,7 @@ use super::block::{Block, Pair, times};
 use super::configuration::Kept;
 use super::linear::{Linear, Seen, seen};
 use crate::model::layout::{ContactLayout, Layout, Term, constant};
+use crate::numeric::linear;
 use crate::system::{Part, System};
 
 /// A vector that moves with the phase, `sum_h a_h cos h tau + b_h sin h tau`.
@@ -95,7 +96,8 @@ impl Moving {
         };
         for (harmonic, cosine, sine) in &self.waves {
             let turns = derivative_of_turn(*harmonic, tau, derivative);
-            sum += turns[0] * dot(cosine, entries) + turns[1] * dot(sine, entries);
+            let [cosine, sine] = [cosine, sine].map(|of| linear::dot(of, entries));
+            sum += turns[0] * cosine + turns[1] * sine;
         }
         sum
     }
@@ -257,17 +259,15 @@ impl Contact {
         self.gap.write(tau, 0, gap);
         self.rate.write(tau, 0, rate);
         let mut output = Output {
-            gap: dot(gap, states) - self.offset.value(tau, 0),
-            rate: dot(rate, states),
+            gap: linear::dot(gap, states) - self.offset.value(tau, 0),
+            rate: linear::dot(rate, states),
             ..Output::default()
         };
         if !self.gap.is_constant() {
-            self.rate.write(tau, 1, another);
-            output.by_phase[1] = dot(another, states);
-            self.gap.write(tau, 2, another);
-            output.by_phase[1] += base * dot(another, states);
+            output.by_phase[1] = self.rate.dot(tau, 1, states);
+            output.by_phase[1] += base * self.gap.dot(tau, 2, states);
             self.gap.write(tau, 1, another);
-            output.by_phase[0] = dot(another, states);
+            output.by_phase[0] = linear::dot(another, states);
             for (rate, turning) in rate.iter_mut().zip(&*another) {
                 *rate += base * turning;
             }

@@ -14,6 +14,7 @@ use crate::contact_equation::equations::pass_results::Passed;
 use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::linear_part::kernels::{Found, Kernels};
 use crate::contact_equation::linear_part::values::pair;
+use crate::numeric::fourier::kernels::LANES;
 
 /// Those of one interval.
 #[derive(Debug, Default)]
@@ -21,6 +22,8 @@ pub(super) struct Fast {
     pairs: Vec<usize>,
     blocks: Vec<Block>,
     kernels: Kernels,
+    /// How many there are, as a multiple of the lanes: those behind the last one are at rest.
+    count: usize,
     /// Entries of `D`, pair by pair: row by row.
     deviation: [Vec<f64>; 4],
     /// What the forces at each node do to the first and to the second states, pair by pair.
@@ -57,15 +60,22 @@ impl Fast {
         let is_fast = |r: &usize| !of.nodes.follows(all[*r].rate() * whole.abs());
         let pairs: Vec<usize> = (0..all.len()).filter(is_fast).collect();
         let blocks: Vec<Block> = pairs.iter().map(|&r| all[r]).collect();
-        let n = of.nodes.count();
+        let (n, count) = (of.nodes.count(), pairs.len().next_multiple_of(LANES));
         let load = [0, 1].map(|i| {
-            let nodes = (0..n).flat_map(|node| pairs.iter().map(move |r| [*r, node]));
-            let at = |[r, node]: [usize; 2]| passed.load[(2 * r + i) * n + node];
-            nodes.map(at).collect()
+            let mut load = vec![0.0; n * count];
+            for (node, load) in load.chunks_exact_mut(count.max(1)).enumerate() {
+                for (to, r) in load.iter_mut().zip(&pairs) {
+                    *to = passed.load[(2 * r + i) * n + node];
+                }
+            }
+            load
         });
         let entry = |row: usize, column: usize| {
-            let entries = blocks.iter().map(|block| block.deviation[row][column]);
-            entries.collect()
+            let mut entries = vec![0.0; count];
+            for (entry, block) in entries.iter_mut().zip(&blocks) {
+                *entry = block.deviation[row][column];
+            }
+            entries
         };
         let alone = match &of.active[..] {
             [active] => Some(&values.contacts[active.contact].input),
@@ -76,6 +86,7 @@ impl Fast {
         Self {
             kernels: Kernels::of(&blocks),
             deviation: [entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)],
+            count,
             load,
             alone,
             pairs,
@@ -90,13 +101,13 @@ impl Fast {
 
     /// Leaves in the room what forces have done up to where a rule ends, in an interval of this length.
     pub(super) fn follow(&self, passed: &Passed, rule: &Partway, whole: f64, room: &mut FastRoom) {
-        let count = self.pairs.len();
+        let count = self.count;
         for states in &mut room.states {
             states.clear();
             states.resize(count, 0.0);
         }
         for force in &mut room.force {
-            force.resize(count, 0.0);
+            force.resize(rule.points.len().max(1) * count, 0.0);
         }
         if let Some(target) = rule.done {
             let order = passed.free.len();
@@ -105,45 +116,49 @@ impl Fast {
                 let known = pair(known, r);
                 (room.force[0][place], room.force[1][place]) = (known[0], known[1]);
             }
-            self.add(rule.left * whole, 1.0, room);
+            self.add(rule.left * whole, 1.0, 0, room);
         }
-        let n = self.load[0].len() / count.max(1);
-        let rows = rule.values.chunks_exact(n.max(1));
-        for ([left, weight], row) in rule.points.iter().zip(rows) {
-            self.write_force(row, room);
-            self.add(left * whole, weight * whole, room);
+        self.write_forces(rule, room);
+        for (point, [left, weight]) in rule.points.iter().enumerate() {
+            self.add(left * whole, weight * whole, point, room);
         }
     }
 
-    fn write_force(&self, row: &[f64], room: &mut FastRoom) {
-        let count = self.pairs.len();
-        if let Some(Alone {
+    /// Writes what forces do at every point of a rule.
+    fn write_forces(&self, rule: &Partway, room: &mut FastRoom) {
+        let count = self.count;
+        let Some(Alone {
             input,
             state,
             place,
         }) = &self.alone
-        {
+        else {
+            for (to, load) in room.force.iter_mut().zip(&self.load) {
+                let to = &mut to[..rule.points.len() * count];
+                write_sums(&rule.values, load, count, to);
+            }
+            return;
+        };
+        let rows = rule.values.chunks_exact(self.load[0].len() / count);
+        for (point, row) in rows.enumerate() {
             let nodes = self.load[*state].chunks_exact(count);
             let sum: f64 = row.iter().zip(nodes).map(|(l, f)| l * f[*place]).sum();
             let force = sum / input[*state][*place];
             for (to, input) in room.force.iter_mut().zip(input) {
-                for (to, input) in to.iter_mut().zip(input) {
+                for (to, input) in to[point * count..].iter_mut().zip(input) {
                     *to = force * input;
                 }
             }
-            return;
-        }
-        for (to, load) in room.force.iter_mut().zip(&self.load) {
-            write_sums(row, load, to);
         }
     }
 
-    /// Adds `e^(A t)` of what is written as a force, times a factor.
-    fn add(&self, time: f64, factor: f64, room: &mut FastRoom) {
+    /// Adds `e^(A t)` of what is written at a point, times a factor.
+    fn add(&self, time: f64, factor: f64, point: usize, room: &mut FastRoom) {
         self.kernels.find(&self.blocks, time, &mut room.kernels);
         let kernels = [&room.kernels.c[..], &room.kernels.k[..]];
         let [first, second] = &mut room.states;
-        let force = [&room.force[0][..], &room.force[1][..]];
+        let force = room.force.each_ref();
+        let force = force.map(|of| &of[point * self.count..][..self.count]);
         let [a, b, c, d] = &self.deviation;
         add_carried([a, b], kernels, factor, force, first);
         add_carried([d, c], kernels, factor, [force[1], force[0]], second);
@@ -169,13 +184,26 @@ impl Alone {
     }
 }
 
-/// Writes sums of columns with these factors.
+/// Writes sums of columns of this length with the factors of each row, row by row: group by group of lanes, so that sums stay in registers.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn write_sums(factors: &[f64], columns: &[f64], to: &mut [f64]) {
-    to.fill(0.0);
-    for (factor, column) in factors.iter().zip(columns.chunks_exact(to.len())) {
-        for (to, x) in to.iter_mut().zip(column) {
-            *to += factor * x;
+fn write_sums(rows: &[f64], columns: &[f64], length: usize, to: &mut [f64]) {
+    if length == 0 {
+        return;
+    }
+    let factors = columns.len() / length;
+    let groups = length / LANES;
+    let (columns, _) = columns.as_chunks::<LANES>();
+    let (to, _) = to.as_chunks_mut::<LANES>();
+    for (row, to) in rows.chunks_exact(factors).zip(to.chunks_exact_mut(groups)) {
+        for (group, to) in to.iter_mut().enumerate() {
+            let mut sum = [0.0; LANES];
+            let own = columns[group..].iter().step_by(groups);
+            for (factor, column) in row.iter().zip(own) {
+                for l in 0..LANES {
+                    sum[l] += factor * column[l];
+                }
+            }
+            *to = sum;
         }
     }
 }

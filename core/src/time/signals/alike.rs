@@ -140,7 +140,7 @@ mod tests {
             output sum = x + y;
             output rate = dot(y) - 3;
             output turning = x*cos(omega*t);
-            output both = force(ball);
+            output both = ball(one) + ball(two);
         }
     }
 
