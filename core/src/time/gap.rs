@@ -50,10 +50,17 @@ impl Gap {
         let (q, v) = state.split_at(state.len() / 2);
         let (mut gap, mut rate) = (0.0, 0.0);
         let mut waves = Waves::at(phase);
+        // Of many coordinates one after the other has the wave of the one before.
+        let mut known = Wave::CONSTANT;
+        let (mut value, mut slope) = (waves.value(known), waves.slope(known));
         for &(index, wave, d) in &self.direction {
-            let here = d * waves.value(wave);
+            if wave != known {
+                known = wave;
+                (value, slope) = (waves.value(wave), waves.slope(wave));
+            }
+            let here = d * value;
             gap += here * q[index];
-            rate += here * v[index] + d * self.base * waves.slope(wave) * q[index];
+            rate += here * v[index] + d * self.base * slope * q[index];
         }
         for &(wave, delta) in &self.offset {
             gap -= delta * waves.value(wave);

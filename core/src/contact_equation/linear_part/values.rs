@@ -205,6 +205,22 @@ impl Contact {
         [of(0), rate + base * turning]
     }
 
+    /// The same by the states of the linear part.
+    pub(in crate::contact_equation) fn gap_in(
+        &self,
+        tau: f64,
+        base: f64,
+        states: &[f64],
+    ) -> [f64; 2] {
+        let of = |derivative: u32| {
+            let offset = self.offset.value(tau, derivative);
+            self.gap.dot(tau, derivative, states) - offset
+        };
+        let rate = self.rate.dot(tau, 0, states);
+        let turning = if self.stands() { 0.0 } else { of(1) };
+        [of(0), rate + base * turning]
+    }
+
     /// The offset of one that stands.
     pub(in crate::contact_equation) fn constant_offset(&self) -> f64 {
         self.offset.value(0.0, 0)

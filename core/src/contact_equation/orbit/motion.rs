@@ -15,7 +15,7 @@ use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::linear_part::configuration::Configuration;
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::linear::{Seen, of_states};
-use crate::contact_equation::linear_part::values::{Contact, Instant, Values, pair};
+use crate::contact_equation::linear_part::values::{Contact, Values, pair};
 use crate::numeric::roots::Place;
 use crate::time;
 
@@ -35,7 +35,6 @@ pub(in crate::contact_equation) struct Motion<'e> {
 /// Room for one instant.
 pub(super) struct Room {
     pub(super) states: Vec<f64>,
-    rows: [Vec<f64>; 3],
     pub(super) weights: Vec<f64>,
     steady: Vec<f64>,
     /// States of a configuration.
@@ -51,7 +50,6 @@ impl<'e> Motion<'e> {
         let states = || vec![0.0; equations.skeleton.order];
         let room = Room {
             states: states(),
-            rows: std::array::from_fn(|_| states()),
             weights: Vec::new(),
             steady: states(),
             own: states(),
@@ -243,7 +241,7 @@ impl<'e> Motion<'e> {
     ) -> [f64; 2] {
         let room = &mut *self.room.borrow_mut();
         self.write(interval, phase, room);
-        self.gap_in(contact, phase, &room.states, &mut room.rows)
+        self.gap_of(contact, phase, &room.states)
     }
 
     /// The same in these states.
@@ -253,27 +251,9 @@ impl<'e> Motion<'e> {
         phase: f64,
         states: &[f64],
     ) -> [f64; 2] {
-        let room = &mut *self.room.borrow_mut();
-        self.gap_in(contact, phase, states, &mut room.rows)
-    }
-
-    fn gap_in(
-        &self,
-        contact: usize,
-        tau: f64,
-        states: &[f64],
-        rows: &mut [Vec<f64>; 3],
-    ) -> [f64; 2] {
         let values = &self.equations.values;
-        let base = values.base;
-        let instant = Instant {
-            tau,
-            base,
-            by_omega: 0.0,
-        };
-        let [gap, rate, another] = rows;
-        let output = values.contacts[contact].output(instant, states, [gap, rate], another);
-        [output.gap, output.rate / base]
+        let [gap, rate] = values.contacts[contact].gap_in(phase, values.base, states);
+        [gap, rate / values.base]
     }
 
     /// Writes positions and velocities at a phase within an interval.
