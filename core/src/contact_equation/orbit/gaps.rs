@@ -100,6 +100,13 @@ impl Gaps<'_> {
     }
 }
 
+/// A gap with its rate at a phase.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    phase: f64,
+    gap: [f64; 2],
+}
+
 /// Crossings of levels and extremes of all gaps from a phase on, from samples. The motion is looked at once for all of them.
 pub(in crate::contact_equation) fn seen(
     gaps: &Gaps<'_>,
@@ -120,7 +127,10 @@ pub(in crate::contact_equation) fn seen(
         let phase = from + length * (index as f64 / count as f64);
         (gaps.at)(phase, &mut state);
         for (contact, samples) in contacts.iter().zip(&mut samples) {
-            samples.push((phase, gaps.gap_of(*contact, phase, &state)));
+            samples.push(Sample {
+                phase,
+                gap: gaps.gap_of(*contact, phase, &state),
+            });
         }
     }
     for (contact, samples) in contacts.iter().zip(&samples) {
@@ -133,18 +143,21 @@ pub(in crate::contact_equation) fn seen(
 fn look(
     gaps: &Gaps<'_>,
     contact: usize,
-    samples: &[(f64, [f64; 2])],
+    samples: &[Sample],
     crossings: &mut Vec<Placed>,
     extremes: &mut Vec<GapExtreme>,
 ) {
     let levels = &gaps.values.contacts[contact].levels;
-    let within = 1e-12 * (samples[samples.len() - 1].0 - samples[0].0);
+    let within = 1e-12 * (samples[samples.len() - 1].phase - samples[0].phase);
     let mut before = samples[0];
     for &next in &samples[1..] {
         // Between two samples the gap is followed to its extreme and from there.
         let mut ends = vec![before];
-        if before.1[1] * next.1[1] < 0.0 {
-            let [a, b] = [before, next].map(|(x, gap)| Place { x, value: gap[1] });
+        if before.gap[1] * next.gap[1] < 0.0 {
+            let [a, b] = [before, next].map(|at| Place {
+                x: at.phase,
+                value: at.gap[1],
+            });
             if let Some(phase) = roots::root(a, b, within, |x| gaps.gap(contact, x)[1]) {
                 let gap = gaps.gap(contact, phase);
                 extremes.push(GapExtreme {
@@ -154,15 +167,15 @@ fn look(
                     gap: gap[0],
                     maximum: a.value > 0.0,
                 });
-                ends.push((phase, gap));
+                ends.push(Sample { phase, gap });
             }
         }
         ends.push(next);
         for pair in ends.windows(2) {
             for (level, value) in levels.iter().enumerate() {
-                let [a, b] = [pair[0], pair[1]].map(|(x, gap)| Place {
-                    x,
-                    value: gap[0] - value,
+                let [a, b] = [pair[0], pair[1]].map(|at| Place {
+                    x: at.phase,
+                    value: at.gap[0] - value,
                 });
                 if (a.value > 0.0) == (b.value > 0.0) {
                     continue;
