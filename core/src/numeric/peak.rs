@@ -7,8 +7,11 @@ use super::roots::Place;
 
 /// Accuracy of the place, in parts of the way between both ends.
 const LOCATED: f64 = 1e-8;
-/// Two steps in turn that are as short as these parts of the way lead to the place: the second of two parabolas leaves less than the product of both.
-const LAST: [f64; 2] = [1e-2, 1e-5];
+/// Two steps in turn that are as short as these parts of the way lead to the place, the second by a parabola that has told what is gained: it leaves less than the product of
+/// both.
+const LAST: [f64; 2] = [1e-3, 1e-6];
+/// Parts of a value that are rounding.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// Steps, more than golden sections alone would take.
 const STEPS: usize = 60;
 /// `(3 - sqrt 5) / 2`
@@ -38,15 +41,17 @@ pub(crate) fn largest(
         if left <= 2.0 * LOCATED * width {
             break;
         }
-        let by_parabola = vertex(best, others).filter(|by| {
-            let x = best.x + by;
+        let parabola = vertex(best, others).filter(|vertex| {
+            let (by, x) = (vertex.by, best.x + vertex.by);
             by.abs() < 0.5 * steps[1].abs() && x > bracket[0] && x < bracket[1]
         });
-        let by = by_parabola.unwrap_or_else(|| {
+        let by = if let Some(vertex) = parabola {
+            vertex.by
+        } else {
             let end = bracket[usize::from(best.x < middle)];
             steps[0] = end - best.x;
             GOLDEN * steps[0]
-        });
+        };
         let least = LOCATED * width;
         let by = if by.abs() < least {
             least.copysign(if by == 0.0 { middle - best.x } else { by })
@@ -58,18 +63,29 @@ pub(crate) fn largest(
             break;
         }
         let next = Place { x, value: at(x) };
+        let told = parabola.is_some_and(|vertex| {
+            let off = (next.value - best.value - vertex.gain).abs();
+            off <= vertex.gain + ROUNDED * best.value.abs()
+        });
         take(next, &mut best, &mut others, &mut bracket);
         steps = [by, steps[0]];
         let short = LAST.map(|part| part * width);
-        if by_parabola.is_some() && steps[0].abs() <= short[1] && steps[1].abs() <= short[0] {
+        if told && steps[0].abs() <= short[1] && steps[1].abs() <= short[0] {
             break;
         }
     }
     best.value.max(ends[0].value).max(ends[1].value)
 }
 
-/// How far the vertex of the parabola through three places is from the first; none where that is no maximum.
-fn vertex(best: Place, [second, third]: [Place; 2]) -> Option<f64> {
+/// The vertex of a parabola: how far it is from a place, and how much higher.
+#[derive(Debug, Clone, Copy)]
+struct Vertex {
+    by: f64,
+    gain: f64,
+}
+
+/// That of the parabola through three places, from the first; none where it is no maximum.
+fn vertex(best: Place, [second, third]: [Place; 2]) -> Option<Vertex> {
     let (a, b) = (second.x - best.x, third.x - best.x);
     let (f, g) = (best.value - second.value, best.value - third.value);
     // Slope and, with the other sign, half of the second derivative, both times this.
@@ -78,7 +94,8 @@ fn vertex(best: Place, [second, third]: [Place; 2]) -> Option<f64> {
     let bend = b * f - a * g;
     let by = 0.5 * rise / bend;
     let is_maximum = bend * size > 0.0;
-    (by.is_finite() && is_maximum).then_some(by)
+    let gain = 0.5 * rise / size * by;
+    (by.is_finite() && is_maximum).then_some(Vertex { by, gain })
 }
 
 /// Takes a value into the three highest places and the ends of what the largest is in.
