@@ -6,7 +6,8 @@
 //! that may be exceeded.
 //!
 //! Of an orbit that comes back after a part of its period, with coordinates in each other's place, that part is shown alone, and all of its
-//! images are read at once.
+//! images are read at once. A signal of an image that is another signal of the part before, as the force of the ball of a bearing that has come to the place of the one
+//! before it, is looked at there alone. Signals of images are called channels.
 
 use std::f64::consts::TAU;
 
@@ -14,9 +15,10 @@ use super::problem::ShootingProblem;
 use crate::branches::observed::{ContactMotion, EXTREMES, Motion};
 use crate::branches::recurrence::{Recurrence, SignedPermutation};
 use crate::numeric::fourier::{gauss, series};
-use crate::numeric::{disturb, golden};
+use crate::numeric::roots::Place;
+use crate::numeric::{disturb, peak};
 use crate::time::Stretch;
-use crate::time::signals::{Asked, Signals};
+use crate::time::signals::{Asked, Chosen, Signals};
 
 /// Nodes of a rule.
 const NODES: usize = 8;
@@ -64,7 +66,11 @@ pub(crate) struct Found {
 /// Reads signals off an orbit, stretch after stretch.
 pub(crate) struct Reader<'s> {
     signals: Signals<'s>,
+    /// Each signal alone.
+    alone: Vec<Chosen>,
     images: Vec<Image>,
+    /// Which channel each is, of those that are looked at.
+    same: Vec<usize>,
     /// Periods of the declaration.
     period: usize,
     found: Vec<Found>,
@@ -94,6 +100,8 @@ impl Stretch for Rounded<'_> {
 /// One part of the orbit.
 struct Image {
     of: SignedPermutation,
+    /// The signals that are looked at in it.
+    chosen: Chosen,
     /// Its phase after the first part.
     phase: f64,
     /// The piece of every contact on the present stretch.
@@ -140,8 +148,15 @@ impl<'s> Reader<'s> {
             parts,
             image,
         } = recurrence;
+        let later = TAU * *period as f64 / *parts as f64;
+        let count = signals.count();
+        let same = same(&signals, recurrence, later);
         let images = (0..*parts).map(|part| Image {
             of: image.power(part),
+            chosen: signals.choose((0..count).filter(|of| {
+                let channel = part * count + of;
+                same[channel] == channel
+            })),
             phase: TAU * (period * part) as f64 / *parts as f64,
             pieces: vec![0; pieces.len()],
             touched: vec![Vec::new(); pieces.len()],
@@ -156,8 +171,10 @@ impl<'s> Reader<'s> {
         };
         Self {
             images: images.collect(),
+            alone: (0..count).map(|of| signals.choose([of])).collect(),
+            same,
             period: *period,
-            found: vec![found; signals.count()],
+            found: vec![found; count],
             harmonics,
             signals,
             passed: None,
@@ -273,15 +290,37 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Writes all signals of all images at a phase.
+    /// Writes all channels at a phase.
     fn write(&mut self, stretch: &dyn Stretch, phase: f64, out: &mut [f64]) {
         let count = self.found.len().max(1);
         stretch.state(phase, &mut self.state);
         for (image, out) in self.images.iter().zip(out.chunks_exact_mut(count)) {
-            image.of.write(&self.state, &mut self.image);
-            let phase = phase + image.phase;
-            self.signals.write(phase, &self.image, &image.pieces, out);
+            if !image.chosen.signals().is_empty() {
+                let state = image.state(&self.state, &mut self.image);
+                let (chosen, phase) = (&image.chosen, phase + image.phase);
+                self.signals
+                    .write_some(chosen, phase, state, &image.pieces, out);
+            }
         }
+        for channel in 0..out.len() {
+            out[channel] = out[self.same[channel]];
+        }
+    }
+
+    /// Writes one channel at a phase in its place among the signals, and returns it.
+    fn value(&mut self, stretch: &dyn Stretch, phase: f64, channel: usize, out: &mut [f64]) -> f64 {
+        let count = self.found.len();
+        stretch.state(phase, &mut self.state);
+        let (image, alone) = (&self.images[channel / count], &self.alone[channel % count]);
+        let state = image.state(&self.state, &mut self.image);
+        let phase = phase + image.phase;
+        self.signals
+            .write_some(alone, phase, state, &image.pieces, out);
+        out[channel % count]
+    }
+
+    fn is_looked_at(&self, channel: usize) -> bool {
+        self.same[channel] == channel
     }
 
     fn nodes(&mut self, stretch: &dyn Stretch, [from, to]: [f64; 2]) -> Nodes {
@@ -316,7 +355,7 @@ impl<'s> Reader<'s> {
         let middle = 0.5 * (from + to);
         let halves = [[from, middle], [middle, to]];
         let parts = halves.map(|ends| self.nodes(stretch, ends));
-        let apart = apart(whole, &parts);
+        let apart = self.apart(whole, &parts);
         let noise = apart <= NOISE && apart >= 0.25 * before;
         if apart <= AGREE || noise || depth == 0 {
             self.take(stretch, [from, to], &parts);
@@ -349,6 +388,26 @@ impl<'s> Reader<'s> {
         self.take_extremes(stretch, ends, halves);
     }
 
+    /// The largest difference of integrals by a rule and by the rule on halves, in parts of the largest value.
+    fn apart(&self, whole: &Nodes, halves: &[Nodes; 2]) -> f64 {
+        let length: f64 = whole.weights.iter().sum();
+        let mut apart: f64 = 0.0;
+        let channels = 0..self.same.len();
+        for channel in channels.filter(|channel| self.is_looked_at(*channel)) {
+            let [a, b, c] = [whole, &halves[0], &halves[1]].map(|nodes| nodes.sums(channel));
+            let size = |nodes: &Nodes| {
+                let values = (0..NODES).map(|index| nodes.at(index, channel).abs());
+                values.fold(0.0, f64::max)
+            };
+            let size = size(&halves[0]).max(size(&halves[1]));
+            if size > 0.0 {
+                apart = apart.max((a[0] - b[0] - c[0]).abs() / (size * length));
+                apart = apart.max((a[1] - b[1] - c[1]).abs() / (size * size * length));
+            }
+        }
+        apart
+    }
+
     fn take_extremes(&mut self, stretch: &dyn Stretch, ends: [f64; 2], halves: &[Nodes; 2]) {
         let count = self.found.len();
         let channels = count * self.images.len();
@@ -356,8 +415,11 @@ impl<'s> Reader<'s> {
         for (phase, values) in ends.into_iter().zip(&mut at_ends) {
             self.write(stretch, phase, values);
         }
-        let mut row = vec![0.0; channels];
+        let mut row = vec![0.0; count];
         for channel in 0..channels {
+            if !self.is_looked_at(channel) {
+                continue;
+            }
             let mut samples = [[0.0; 2]; 2 * NODES + 2];
             samples[0] = [ends[0], at_ends[0][channel]];
             samples[2 * NODES + 1] = [ends[1], at_ends[1][channel]];
@@ -377,10 +439,7 @@ impl<'s> Reader<'s> {
                 } else {
                     -motion.minimum
                 };
-                let mut at = |phase: f64| {
-                    self.write(stretch, phase, &mut row);
-                    sign * row[channel]
-                };
+                let mut at = |phase: f64| sign * self.value(stretch, phase, channel, &mut row);
                 let largest = largest(&samples, sign, known, &mut at);
                 motion.include(sign * largest);
             }
@@ -389,28 +448,34 @@ impl<'s> Reader<'s> {
     }
 }
 
+impl Image {
+    /// The state in it of the one in the first part.
+    fn state<'r>(&self, state: &'r [f64], room: &'r mut [f64]) -> &'r [f64] {
+        if self.of.is_identity() {
+            return state;
+        }
+        self.of.write(state, room);
+        room
+    }
+}
+
 /// A phase between two others, graded at both.
 fn place(s: f64, [begin, end]: [f64; 2]) -> f64 {
     begin + (end - begin) * s * s * (3.0 - 2.0 * s)
 }
 
-/// The largest difference of integrals by a rule and by the rule on halves, in parts of the largest value.
-fn apart(whole: &Nodes, halves: &[Nodes; 2]) -> f64 {
-    let length: f64 = whole.weights.iter().sum();
-    let mut apart: f64 = 0.0;
-    for channel in 0..whole.values.len() / NODES {
-        let [a, b, c] = [whole, &halves[0], &halves[1]].map(|nodes| nodes.sums(channel));
-        let size = |nodes: &Nodes| {
-            let values = (0..NODES).map(|index| nodes.at(index, channel).abs());
-            values.fold(0.0, f64::max)
-        };
-        let size = size(&halves[0]).max(size(&halves[1]));
-        if size > 0.0 {
-            apart = apart.max((a[0] - b[0] - c[0]).abs() / (size * length));
-            apart = apart.max((a[1] - b[1] - c[1]).abs() / (size * size * length));
+/// For every channel the one that is looked at in its place: a signal that is another one after a part of the period is that in the image before.
+fn same(signals: &Signals<'_>, recurrence: &Recurrence, later: f64) -> Vec<usize> {
+    let count = signals.count();
+    let mut same: Vec<usize> = (0..count).collect();
+    if recurrence.parts > 1 {
+        let images = signals.images(later, &|index| recurrence.image.entry(index));
+        for channel in count..count * recurrence.parts {
+            let before = images[channel % count].map(|of| channel / count * count - count + of);
+            same.push(before.map_or(channel, |before| same[before]));
         }
     }
-    apart
+    same
 }
 
 /// The largest value near samples, or the one that is known.
@@ -430,7 +495,13 @@ fn largest(samples: &[[f64; 2]], sign: f64, known: f64, at: &mut dyn FnMut(f64) 
         // Beyond an end it may grow, but that is not asked.
         let outwards = index == 0 && sign * slope <= 0.0 || index == last && sign * slope >= 0.0;
         if !outwards && here + 2.0 * rise > largest {
-            let found = golden::largest(&mut *at, samples[before][0], samples[next][0]);
+            let place = |index: usize| Place {
+                x: samples[index][0],
+                value: value(index),
+            };
+            let ends = [before, next].map(place);
+            let inside = (before < index && index < next).then(|| place(index));
+            let found = peak::largest(&mut *at, ends, inside);
             largest = largest.max(found);
         }
     }

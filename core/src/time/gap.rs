@@ -35,15 +35,32 @@ impl Gap {
         self.base = base;
     }
 
+    /// Coordinate, wave and coefficient of every term of `d`.
+    pub(crate) fn direction(&self) -> impl Iterator<Item = (usize, Wave, f64)> {
+        self.direction.iter().copied()
+    }
+
+    /// The same of `delta`, without coordinate.
+    pub(crate) fn offset(&self) -> impl Iterator<Item = (Wave, f64)> {
+        self.offset.iter().copied()
+    }
+
     /// The gap and its rate.
     pub(crate) fn at(&self, phase: f64, state: &[f64]) -> (f64, f64) {
         let (q, v) = state.split_at(state.len() / 2);
         let (mut gap, mut rate) = (0.0, 0.0);
         let mut waves = Waves::at(phase);
+        // Of many coordinates one after the other has the wave of the one before.
+        let mut known = Wave::CONSTANT;
+        let (mut value, mut slope) = (waves.value(known), waves.slope(known));
         for &(index, wave, d) in &self.direction {
-            let here = d * waves.value(wave);
+            if wave != known {
+                known = wave;
+                (value, slope) = (waves.value(wave), waves.slope(wave));
+            }
+            let here = d * value;
             gap += here * q[index];
-            rate += here * v[index] + d * self.base * waves.slope(wave) * q[index];
+            rate += here * v[index] + d * self.base * slope * q[index];
         }
         for &(wave, delta) in &self.offset {
             gap -= delta * waves.value(wave);

@@ -17,9 +17,9 @@ use std::ops::Range;
 use multiversion::multiversion;
 
 use crate::contact_equation::collocation::nodes::Nodes;
-use crate::contact_equation::linear_part::block::{Block, add_both, times};
+use crate::contact_equation::linear_part::block::{Block, Pair, add_both, times};
 use crate::contact_equation::linear_part::kernels::Found;
-use crate::contact_equation::linear_part::values::Values;
+use crate::contact_equation::linear_part::values::{Values, pair};
 use crate::contact_equation::skeleton::interval::Active;
 
 /// Of one interval. Forced states stand state by state, target by target.
@@ -29,7 +29,7 @@ pub(super) struct Integrals {
     /// Per pair, row by row of targets, node by node: coefficients of `I` and of `D`.
     once: Vec<f64>,
     twice: Vec<f64>,
-    /// Per active contact and node: what a unit force does to the states.
+    /// Per active contact: what a unit force does to the states, state by state, node by node.
     input: Vec<f64>,
     /// What all forces together do to a state, node by node; and, where directions move, how that changes with where the interval begins,
     /// and with where it ends.
@@ -126,11 +126,12 @@ impl Integrals {
             for node in 0..n {
                 let psi = of.nodes.targets[node];
                 let phase = from + psi * (to - from);
-                let input = &mut input[(place * n + node) * order..][..order];
-                contact.input.write(phase, 0, input);
+                let input = &mut input[place * n * order..][..n * order];
+                contact.input.write(phase, 0, row);
                 let force = of.u[active.first + node];
-                for (state, input) in input.iter().enumerate() {
-                    load[0][state * n + node] += force * input;
+                for (state, by) in row.iter().enumerate() {
+                    input[state * n + node] = *by;
+                    load[0][state * n + node] += force * by;
                 }
                 if self.moves {
                     contact.input.write(phase, 1, row);
@@ -271,20 +272,32 @@ impl Integrals {
             for r in pairs.clone() {
                 let tables = [&self.once, &self.twice];
                 let tables = tables.map(|of| &of[r * size + target * n..][..n]);
-                let through = |l: usize| {
-                    let input = &self.input[(place * n + l) * order + 2 * r..][..2];
-                    [row, turned].map(|row| row[2 * r] * input[0] + row[2 * r + 1] * input[1])
-                };
+                let input = &self.input[(place * order + 2 * r) * n..][..2 * n];
+                let input: [&[f64]; 2] = input.split_at(n).into();
+                let factors = [row, turned].map(|row| pair(row, r));
                 if moves {
-                    for (l, entry) in entries.iter_mut().enumerate() {
-                        let [x, y] = through(l);
-                        *entry += tables[0][l] * x + tables[1][l] * y;
-                    }
+                    add_moving(tables, input, factors, entries);
                 } else {
-                    add_both(tables, through(0), entries);
+                    let [first, second] = input;
+                    let through = factors.map(|of| of[0] * first[0] + of[1] * second[0]);
+                    add_both(tables, through, entries);
                 }
             }
         }
+    }
+}
+
+/// Adds both tables, each times what a row of two entries sees of the input at the nodes.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn add_moving(
+    [once, twice]: [&[f64]; 2],
+    [first, second]: [&[f64]; 2],
+    [row, turned]: [Pair; 2],
+    entries: &mut [f64],
+) {
+    let tables = once.iter().zip(twice).zip(first.iter().zip(second));
+    for (entry, ((once, twice), (a, b))) in entries.iter_mut().zip(tables) {
+        *entry += once * (row[0] * a + row[1] * b) + twice * (turned[0] * a + turned[1] * b);
     }
 }
 

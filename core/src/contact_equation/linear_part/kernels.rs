@@ -126,10 +126,10 @@ fn decay(means: &[f64], per_root: &[f64], s: f64, [c, k]: [&mut [f64]; 2]) {
     let (c, _) = c.as_chunks_mut::<LANES>();
     let (k, _) = k.as_chunks_mut::<LANES>();
     for (((means, per_root), c), k) in means.iter().zip(per_root).zip(c).zip(k) {
+        let decay = powers(&means.map(|mean| mean * s));
         for j in 0..LANES {
-            let decay = power(means[j] * s);
-            c[j] *= decay;
-            k[j] *= decay * per_root[j];
+            c[j] *= decay[j];
+            k[j] *= decay[j] * per_root[j];
         }
     }
 }
@@ -141,25 +141,30 @@ fn decay_by_angle(angles: &[f64], [mean, per_root]: [f64; 2], [c, k]: [&mut [f64
     let (c, _) = c.as_chunks_mut::<LANES>();
     let (k, _) = k.as_chunks_mut::<LANES>();
     for ((angles, c), k) in angles.iter().zip(c).zip(k) {
+        let decay = powers(&angles.map(|angle| mean * angle));
         for j in 0..LANES {
-            let decay = power(mean * angles[j]);
-            c[j] *= decay;
-            k[j] *= decay * per_root;
+            c[j] *= decay[j];
+            k[j] *= decay[j] * per_root;
         }
     }
 }
 
-/// `e^x`
+/// `e^x` of all lanes.
 #[inline(always)]
-fn power(x: f64) -> f64 {
-    let x = x.clamp(-FARTHEST, FARTHEST);
-    let shifted = x * std::f64::consts::LOG2_E + WHOLE;
-    let n = shifted - WHOLE;
-    let r = (x - n * LN_2[0]) - n * LN_2[1];
-    exponential(r) * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
+fn powers<const S: usize>(x: &[f64; S]) -> [f64; S] {
+    let mut powers = [0.0; S];
+    for j in 0..S {
+        let x = x[j].clamp(-FARTHEST, FARTHEST);
+        let shifted = x * std::f64::consts::LOG2_E + WHOLE;
+        let n = shifted - WHOLE;
+        let r = (x - n * LN_2[0]) - n * LN_2[1];
+        let scale = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
+        powers[j] = exponential(r) * scale;
+    }
+    powers
 }
 
-/// `e^r` by its series.
+/// `e^r` by its series, by Horner's rule: products of one lane wait for each other, those of all lanes do not, and are taken together.
 #[inline(always)]
 fn exponential(r: f64) -> f64 {
     const PER: [f64; 14] = [
@@ -178,13 +183,11 @@ fn exponential(r: f64) -> f64 {
         1.0 / 479_001_600.0,
         1.0 / 6_227_020_800.0,
     ];
-    let square = r * r;
-    // Pairs, so that products do not wait for each other.
-    let pair = |k: usize| PER[k] + r * PER[k + 1];
-    let high = pair(8) + square * (pair(10) + square * pair(12));
-    let low = pair(0) + square * (pair(2) + square * (pair(4) + square * pair(6)));
-    let fourth = square * square;
-    low + fourth * fourth * high
+    let mut sum = PER[13];
+    for k in (0..13).rev() {
+        sum = PER[k] + r * sum;
+    }
+    sum
 }
 
 #[cfg(test)]

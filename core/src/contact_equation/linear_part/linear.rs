@@ -232,12 +232,6 @@ impl Linear {
             [*position, *velocity] = of_states(row, states);
         }
     }
-
-    /// `T^-1` of positions and velocities.
-    pub(in crate::contact_equation) fn states(&self, physical: &[f64]) -> Vec<f64> {
-        let product = &self.inverse * DVector::from_column_slice(physical);
-        product.as_slice().to_vec()
-    }
 }
 
 /// A position and its rate in these states.

@@ -9,6 +9,7 @@ use super::block::{Block, Pair, times};
 use super::configuration::Kept;
 use super::linear::{Linear, Seen, seen};
 use crate::model::layout::{ContactLayout, Layout, Term, constant};
+use crate::numeric::linear;
 use crate::system::{Part, System};
 
 /// A vector that moves with the phase, `sum_h a_h cos h tau + b_h sin h tau`.
@@ -79,23 +80,26 @@ impl Moving {
             to[..self.constant.len()].copy_from_slice(&self.constant);
         }
         for (harmonic, cosine, sine) in &self.waves {
-            let (s, c) = (harmonic * tau).sin_cos();
-            let (c, s) = match derivative % 4 {
-                0 => (c, s),
-                1 => (-s, c),
-                2 => (-c, -s),
-                _ => (s, -c),
-            };
-            let factor = match derivative {
-                0 => 1.0,
-                1 => *harmonic,
-                2 => harmonic * harmonic,
-                more => harmonic.powi(more as i32),
-            };
+            let turns = derivative_of_turn(*harmonic, tau, derivative);
             for (i, to) in to.iter_mut().enumerate().take(cosine.len()) {
-                *to += factor * (c * cosine[i] + s * sine[i]);
+                *to += turns[0] * cosine[i] + turns[1] * sine[i];
             }
         }
+    }
+
+    /// The product of a derivative by the phase and other entries.
+    fn dot(&self, tau: f64, derivative: u32, entries: &[f64]) -> f64 {
+        let mut sum = if derivative == 0 {
+            dot(&self.constant, entries)
+        } else {
+            0.0
+        };
+        for (harmonic, cosine, sine) in &self.waves {
+            let turns = derivative_of_turn(*harmonic, tau, derivative);
+            let [cosine, sine] = [cosine, sine].map(|of| linear::dot(of, entries));
+            sum += turns[0] * cosine + turns[1] * sine;
+        }
+        sum
     }
 
     /// The highest harmonic.
@@ -120,6 +124,19 @@ impl Moving {
     }
 }
 
+/// A derivative of cosine and sine of a harmonic of a phase, by that.
+fn derivative_of_turn(harmonic: f64, tau: f64, derivative: u32) -> [f64; 2] {
+    let (s, c) = (harmonic * tau).sin_cos();
+    let turns = match derivative % 4 {
+        0 => [c, s],
+        1 => [-s, c],
+        2 => [-c, -s],
+        _ => [s, -c],
+    };
+    let factor = harmonic.powi(derivative as i32);
+    turns.map(|x| factor * x)
+}
+
 /// A contact.
 #[derive(Debug, Clone, Default)]
 pub(in crate::contact_equation) struct Contact {
@@ -135,6 +152,8 @@ pub(in crate::contact_equation) struct Contact {
     pub(in crate::contact_equation) rate: Moving,
     /// `delta`
     pub(super) offset: Moving,
+    /// `d`, over the coordinates.
+    direction: Moving,
     /// Unless one of these moves.
     pub(super) standing: Option<Standing>,
 }
@@ -169,12 +188,37 @@ impl Contact {
         self.gap.is_constant() && self.offset.is_constant()
     }
 
-    /// Gap and rate by positions and velocities, where nothing of it moves.
-    pub(in crate::contact_equation) fn standing_gap(&self, state: &[f64]) -> Option<[f64; 2]> {
-        let Standing { gap, offset, .. } = self.standing.as_ref()?;
-        let (positions, velocities) = state.split_at(gap.len());
-        let [gap, rate] = [positions, velocities].map(|of| dot(gap.as_slice(), of));
-        Some([gap - offset, rate])
+    /// Gap and rate at a phase that moves so fast, by positions and velocities: (2).
+    pub(in crate::contact_equation) fn gap_of(
+        &self,
+        tau: f64,
+        base: f64,
+        state: &[f64],
+    ) -> [f64; 2] {
+        let (positions, velocities) = state.split_at(state.len() / 2);
+        let of = |derivative: u32| {
+            let offset = self.offset.value(tau, derivative);
+            self.direction.dot(tau, derivative, positions) - offset
+        };
+        let rate = self.direction.dot(tau, 0, velocities);
+        let turning = if self.stands() { 0.0 } else { of(1) };
+        [of(0), rate + base * turning]
+    }
+
+    /// The same by the states of the linear part.
+    pub(in crate::contact_equation) fn gap_in(
+        &self,
+        tau: f64,
+        base: f64,
+        states: &[f64],
+    ) -> [f64; 2] {
+        let of = |derivative: u32| {
+            let offset = self.offset.value(tau, derivative);
+            self.gap.dot(tau, derivative, states) - offset
+        };
+        let rate = self.rate.dot(tau, 0, states);
+        let turning = if self.stands() { 0.0 } else { of(1) };
+        [of(0), rate + base * turning]
     }
 
     /// The offset of one that stands.
@@ -231,17 +275,15 @@ impl Contact {
         self.gap.write(tau, 0, gap);
         self.rate.write(tau, 0, rate);
         let mut output = Output {
-            gap: dot(gap, states) - self.offset.value(tau, 0),
-            rate: dot(rate, states),
+            gap: linear::dot(gap, states) - self.offset.value(tau, 0),
+            rate: linear::dot(rate, states),
             ..Output::default()
         };
         if !self.gap.is_constant() {
-            self.rate.write(tau, 1, another);
-            output.by_phase[1] = dot(another, states);
-            self.gap.write(tau, 2, another);
-            output.by_phase[1] += base * dot(another, states);
+            output.by_phase[1] = self.rate.dot(tau, 1, states);
+            output.by_phase[1] += base * self.gap.dot(tau, 2, states);
             self.gap.write(tau, 1, another);
-            output.by_phase[0] = dot(another, states);
+            output.by_phase[0] = linear::dot(another, states);
             for (rate, turning) in rate.iter_mut().zip(&*another) {
                 *rate += base * turning;
             }
@@ -522,8 +564,12 @@ fn contact(
             .input
             .add(term, -coefficients[term.coefficient], &states);
     }
+    let mut unit = vec![0.0; layout.coordinates];
     for term in &of.gap {
         let factor = coefficients[term.coefficient];
+        unit[term.index] = 1.0;
+        contact.direction.add(term, factor, &unit);
+        unit[term.index] = 0.0;
         contact
             .gap
             .add(term, factor, &row(&linear.positions, term.index));

@@ -23,7 +23,7 @@
 //! Source: Abramowitz and Stegun (1964), Handbook of Mathematical Functions, section 25.3 (numerical differentiation).
 
 use crate::contact_equation::equations::pass_results::GapExtreme;
-use crate::contact_equation::linear_part::values::{Instant, Values};
+use crate::contact_equation::linear_part::values::Values;
 use crate::contact_equation::skeleton::placement::{Placed, Switch, Told};
 use crate::numeric::roots::{self, Place};
 
@@ -65,21 +65,17 @@ impl Gaps<'_> {
 
     /// Gap and rate by the time.
     pub(in crate::contact_equation) fn gap(&self, contact: usize, phase: f64) -> [f64; 2] {
-        let state = self.state(phase);
-        if let Some(found) = self.values.contacts[contact].standing_gap(&state) {
-            return found;
-        }
-        let states = self.values.linear.states(&state);
-        let mut rows: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; states.len()]);
-        let instant = Instant {
-            tau: phase,
-            base: self.values.base,
-            by_omega: 0.0,
-        };
-        let [gap, rate, another] = &mut rows;
-        let contact = &self.values.contacts[contact];
-        let output = contact.output(instant, &states, [gap, rate], another);
-        [output.gap, output.rate]
+        self.gap_of(contact, phase, &self.state(phase))
+    }
+
+    /// The same in a state.
+    pub(in crate::contact_equation) fn gap_of(
+        &self,
+        contact: usize,
+        phase: f64,
+        state: &[f64],
+    ) -> [f64; 2] {
+        self.values.contacts[contact].gap_of(phase, self.values.base, state)
     }
 
     /// (1), by the phase.
@@ -104,43 +100,64 @@ impl Gaps<'_> {
     }
 }
 
-/// Crossings of levels and extremes of all gaps from a phase on, from samples.
+/// A gap with its rate at a phase.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    phase: f64,
+    gap: [f64; 2],
+}
+
+/// Crossings of levels and extremes of all gaps from a phase on, from samples. The motion is looked at once for all of them.
 pub(in crate::contact_equation) fn seen(
     gaps: &Gaps<'_>,
     from: f64,
     length: f64,
 ) -> (Vec<Placed>, Vec<GapExtreme>) {
     let (mut crossings, mut extremes) = (Vec::new(), Vec::new());
-    for (contact, of) in gaps.values.contacts.iter().enumerate() {
-        if !of.levels.is_empty() {
-            look(gaps, contact, [from, length], &mut crossings, &mut extremes);
+    let contacts = gaps.values.contacts.iter().enumerate();
+    let contacts = contacts.filter(|(_, of)| !of.levels.is_empty());
+    let contacts: Vec<usize> = contacts.map(|(contact, _)| contact).collect();
+    if contacts.is_empty() {
+        return (crossings, extremes);
+    }
+    let count = (SAMPLES * length / std::f64::consts::TAU).ceil() as usize;
+    let mut samples = vec![Vec::with_capacity(count + 1); contacts.len()];
+    let mut state = vec![0.0; 2 * gaps.coordinates];
+    for index in 0..=count {
+        let phase = from + length * (index as f64 / count as f64);
+        (gaps.at)(phase, &mut state);
+        for (contact, samples) in contacts.iter().zip(&mut samples) {
+            samples.push(Sample {
+                phase,
+                gap: gaps.gap_of(*contact, phase, &state),
+            });
         }
+    }
+    for (contact, samples) in contacts.iter().zip(&samples) {
+        look(gaps, *contact, samples, &mut crossings, &mut extremes);
     }
     (crossings, extremes)
 }
 
-/// The same of one gap.
+/// The same of one gap, from its samples.
 fn look(
     gaps: &Gaps<'_>,
     contact: usize,
-    [from, length]: [f64; 2],
+    samples: &[Sample],
     crossings: &mut Vec<Placed>,
     extremes: &mut Vec<GapExtreme>,
 ) {
     let levels = &gaps.values.contacts[contact].levels;
-    let samples = (SAMPLES * length / std::f64::consts::TAU).ceil() as usize;
-    let at = |index: usize| {
-        let phase = from + length * (index as f64 / samples as f64);
-        (phase, gaps.gap(contact, phase))
-    };
-    let mut before = at(0);
-    for index in 1..=samples {
-        let next = at(index);
-        let within = 1e-12 * length;
+    let within = 1e-12 * (samples[samples.len() - 1].phase - samples[0].phase);
+    let mut before = samples[0];
+    for &next in &samples[1..] {
         // Between two samples the gap is followed to its extreme and from there.
         let mut ends = vec![before];
-        if before.1[1] * next.1[1] < 0.0 {
-            let [a, b] = [before, next].map(|(x, gap)| Place { x, value: gap[1] });
+        if before.gap[1] * next.gap[1] < 0.0 {
+            let [a, b] = [before, next].map(|at| Place {
+                x: at.phase,
+                value: at.gap[1],
+            });
             if let Some(phase) = roots::root(a, b, within, |x| gaps.gap(contact, x)[1]) {
                 let gap = gaps.gap(contact, phase);
                 extremes.push(GapExtreme {
@@ -150,15 +167,15 @@ fn look(
                     gap: gap[0],
                     maximum: a.value > 0.0,
                 });
-                ends.push((phase, gap));
+                ends.push(Sample { phase, gap });
             }
         }
         ends.push(next);
         for pair in ends.windows(2) {
             for (level, value) in levels.iter().enumerate() {
-                let [a, b] = [pair[0], pair[1]].map(|(x, gap)| Place {
-                    x,
-                    value: gap[0] - value,
+                let [a, b] = [pair[0], pair[1]].map(|at| Place {
+                    x: at.phase,
+                    value: at.gap[0] - value,
                 });
                 if (a.value > 0.0) == (b.value > 0.0) {
                     continue;

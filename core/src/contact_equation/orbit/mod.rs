@@ -3,6 +3,7 @@
 
 mod content;
 pub(super) mod extremes;
+mod fast;
 mod forced;
 pub(super) mod gaps;
 mod grid;

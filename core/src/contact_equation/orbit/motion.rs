@@ -6,6 +6,7 @@
 use std::cell::{OnceCell, RefCell};
 
 use super::extremes::{Sampled, extremes_of_coordinates, extremes_of_gaps};
+use super::fast::{Fast, FastRoom};
 use super::forced::Forced;
 use crate::contact_equation::collocation::partway::Partway;
 use crate::contact_equation::equations::Equations;
@@ -14,7 +15,7 @@ use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::linear_part::configuration::Configuration;
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::linear::{Seen, of_states};
-use crate::contact_equation::linear_part::values::{Contact, Instant, Values, pair};
+use crate::contact_equation::linear_part::values::{Contact, Values, pair};
 use crate::numeric::roots::Place;
 use crate::time;
 
@@ -27,20 +28,21 @@ pub(in crate::contact_equation) struct Motion<'e> {
     room: RefCell<Room>,
     /// Made when it is asked for.
     sampled: OnceCell<Vec<Sampled>>,
+    /// Pairs that are too fast for polynomials, interval by interval.
+    fast: Vec<OnceCell<Fast>>,
 }
 
 /// Room for one instant.
 pub(super) struct Room {
     pub(super) states: Vec<f64>,
-    rows: [Vec<f64>; 3],
     pub(super) weights: Vec<f64>,
     steady: Vec<f64>,
     /// States of a configuration.
     own: Vec<f64>,
     pub(super) partway: Partway,
     pub(super) kernels: Found,
-    pub(super) rung: Vec<f64>,
     pub(super) slow: Vec<f64>,
+    pub(super) fast: FastRoom,
 }
 
 impl<'e> Motion<'e> {
@@ -48,19 +50,19 @@ impl<'e> Motion<'e> {
         let states = || vec![0.0; equations.skeleton.order];
         let room = Room {
             states: states(),
-            rows: std::array::from_fn(|_| states()),
             weights: Vec::new(),
             steady: states(),
             own: states(),
             partway: Partway::default(),
             kernels: Found::default(),
-            rung: Vec::new(),
             slow: Vec::new(),
+            fast: FastRoom::default(),
         };
         Self {
             equations,
             room: RefCell::new(room),
             sampled: OnceCell::new(),
+            fast: equations.passed.iter().map(|_| OnceCell::new()).collect(),
         }
     }
 
@@ -136,7 +138,8 @@ impl<'e> Motion<'e> {
             }
         }
         if !passed.forced.is_empty() {
-            Forced::new(self.equations, interval, psi, room).add(room);
+            let fast = self.fast[interval].get_or_init(|| Fast::of(self, interval));
+            Forced::new(self.equations, interval, psi, room).add(fast, room);
         }
         values.add_resonant(from, time, &mut room.states);
         if let Some(of) = configuration {
@@ -238,7 +241,7 @@ impl<'e> Motion<'e> {
     ) -> [f64; 2] {
         let room = &mut *self.room.borrow_mut();
         self.write(interval, phase, room);
-        self.gap_in(contact, phase, &room.states, &mut room.rows)
+        self.gap_of(contact, phase, &room.states)
     }
 
     /// The same in these states.
@@ -248,27 +251,9 @@ impl<'e> Motion<'e> {
         phase: f64,
         states: &[f64],
     ) -> [f64; 2] {
-        let room = &mut *self.room.borrow_mut();
-        self.gap_in(contact, phase, states, &mut room.rows)
-    }
-
-    fn gap_in(
-        &self,
-        contact: usize,
-        tau: f64,
-        states: &[f64],
-        rows: &mut [Vec<f64>; 3],
-    ) -> [f64; 2] {
         let values = &self.equations.values;
-        let base = values.base;
-        let instant = Instant {
-            tau,
-            base,
-            by_omega: 0.0,
-        };
-        let [gap, rate, another] = rows;
-        let output = values.contacts[contact].output(instant, states, [gap, rate], another);
-        [output.gap, output.rate / base]
+        let [gap, rate] = values.contacts[contact].gap_in(phase, values.base, states);
+        [gap, rate / values.base]
     }
 
     /// Writes positions and velocities at a phase within an interval.

@@ -11,7 +11,7 @@
 //!
 //! Source: Danskin (1967), The Theory of Max-Min and its Application to Weapons Allocation Problems (derivatives of a largest value).
 
-use nalgebra::DMatrix;
+use nalgebra::Complex;
 
 use crate::branches::moduli::{self, multipliers};
 use crate::branches::observed::{EXTREMES, Motion as Extent, Observed};
@@ -51,12 +51,12 @@ impl Steepness {
 }
 
 impl Run<'_> {
-    /// How peak-to-peak and, with the map of these unknowns, multipliers change with what is varied, along the tangent.
+    /// How peak-to-peak and, with the multipliers of the map of these unknowns, those change with what is varied, along the tangent.
     pub(in crate::contact_equation) fn steepness(
         &mut self,
         at: &CurvePoint,
         point: &Point,
-        map: Option<&DMatrix<f64>>,
+        here: Option<&[Complex<f64>]>,
     ) -> Option<Steepness> {
         let accuracy = self.accuracy();
         let extremes = self.equations.extremes.coordinates.get()?.clone();
@@ -64,13 +64,12 @@ impl Run<'_> {
         let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
         let moved = at.u.iter().zip(&at.tangent);
         let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
-        let multipliers = if let Some(map) = map {
+        let multipliers = if let Some(here) = here {
             let parts = self.equations.skeleton.recurrence().parts;
             let there = self.equations.map(&moved);
             there.map_or(f64::INFINITY, |there| {
-                let here = self.last_map.multipliers(map, parts);
                 let there = multipliers(&there, parts);
-                moduli::distance(&here, &there, map.nrows())
+                moduli::distance(here, &there, self.equations.skeleton.order)
             })
         } else {
             self.equations.compute(&moved, false);

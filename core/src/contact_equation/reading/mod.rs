@@ -134,7 +134,17 @@ impl Run<'_> {
 
     /// Reads an orbit with everything that is asked for, its errors as a finer solution shows them: those at its value.
     pub(super) fn read(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
-        let (mut point, map) = self.read_plainly(at)?;
+        let (point, map) = self.read_plainly(at)?;
+        self.read_further(at, point, map)
+    }
+
+    /// The same of an orbit that was read plainly.
+    fn read_further(
+        &mut self,
+        at: &CurvePoint,
+        mut point: Point,
+        map: Option<DMatrix<f64>>,
+    ) -> Option<ReadOrbit> {
         let overlooks = self.overlooks();
         if overlooks.is_none() {
             return self.read_finer(at, point, map, true);
@@ -183,7 +193,10 @@ impl Run<'_> {
         let moves = apart > 0.0 || self.accuracy().peak_to_peak(&point.observed) > 0.0;
         let noise = if moves { self.noise(&point) } else { 0.0 };
         let size = self.size(&point, noise);
-        let of_map = map.as_ref().filter(|_| at_value && shift != 0.0);
+        let parts = self.equations.skeleton.recurrence().parts;
+        let found = map.as_ref();
+        let found = found.map(|map| self.last_map.multipliers(map, parts));
+        let of_map = found.as_deref().filter(|_| at_value && shift != 0.0);
         let steepness = self.steepness(at, &point, of_map).unwrap_or(Steepness {
             peak_to_peak: self.rise(&point),
             multipliers: 0.0,
@@ -192,12 +205,11 @@ impl Run<'_> {
         let error = part_of(SAFETY * (apart + along) + noise, size);
         point.error = Some(stated(error));
         let mut spread = 0.0;
-        if let Some(map) = &map {
-            let parts = self.equations.skeleton.recurrence().parts;
-            let found = self.last_map.multipliers(map, parts);
+        if let Some((map, found)) = map.as_ref().zip(found) {
             let rounding = self.grown() * parts as f64 * map.norm().max(1.0);
             let moved = moved + rounding;
-            (point.stability, spread) = stability(found, map, finer_map.as_ref(), parts, moved);
+            let finer = finer_map.as_ref();
+            (point.stability, spread) = stability(map, found, finer, parts, moved);
         }
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
@@ -236,7 +248,7 @@ impl Run<'_> {
         let (mut point, map) = self.read_plainly(at)?;
         let (tails, stiffness) = (self.tails(&at.u), self.stiffness());
         if self.overlooks().is_some() {
-            return self.read(at);
+            return self.read_further(at, point, map);
         }
         let narrowest = self.narrowest(&at.u);
         let rise = self.rise(&point);
@@ -248,23 +260,25 @@ impl Run<'_> {
             Some((known, grown))
         });
         let Some((known, [grown, spreading])) = grown else {
-            return self.read(at);
+            return self.read_further(at, point, map);
         };
         known.left -= 1;
         let error = part_of(SAFETY * (known.apart + rise * known.shift), size);
         let error = grown * error.max(known.error);
         let spread = spreading * known.spread;
         if error.is_nan() || error > self.problem.tolerance {
-            return self.read(at);
+            return self.read_further(at, point, map);
+        }
+        if let Some(of) = &map {
+            let parts = self.equations.skeleton.recurrence().parts;
+            let found = self.last_map.multipliers(of, parts);
+            let stability = Stability::of(found, spread);
+            if stability.verdict == Verdict::Undecided {
+                return self.read_further(at, point, map);
+            }
+            point.stability = stability;
         }
         point.error = Some(stated(error));
-        if let Some(map) = &map {
-            let parts = self.equations.skeleton.recurrence().parts;
-            point.stability = Stability::of(self.last_map.multipliers(map, parts), spread);
-            if point.stability.verdict == Verdict::Undecided {
-                return self.read(at);
-            }
-        }
         Some(ReadOrbit {
             point,
             map,
@@ -413,11 +427,11 @@ fn stated(error: f64) -> f64 {
     }
 }
 
-/// The multipliers that were found of a map over one of so many parts, with what a finer solution changes in them and how far they move along the branch to
+/// These multipliers of a map over one of so many parts, with what a finer solution changes in them and how far they move along the branch to
 /// its value; and the most that it changes in them or in the map.
 fn stability(
-    found: Vec<Complex<f64>>,
     map: &DMatrix<f64>,
+    found: Vec<Complex<f64>>,
     finer: Option<&DMatrix<f64>>,
     parts: usize,
     along: f64,

@@ -88,8 +88,9 @@ impl Run<'_> {
         let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
         let gaps = self.gaps(&at);
         let seen = |phase: f64| -> Vec<[f64; 2]> {
-            let all = 0..contacts.len();
-            all.map(|contact| gaps.gap(contact, phase)).collect()
+            let (state, all) = (gaps.state(phase), 0..contacts.len());
+            let gap = |contact| gaps.gap_of(contact, phase, &state);
+            all.map(gap).collect()
         };
         let phase = skeleton.begin + LOOKED_AT * skeleton.length;
         let [now, then] = [phase, phase + skeleton.length].map(seen);

@@ -221,12 +221,16 @@ pub(super) fn write_forces(equations: &Equations, gaps: &Gaps<'_>, u: &mut [f64]
         if length <= 0.0 {
             continue;
         }
-        for active in &interval.active {
-            let of = &gaps.values.contacts[active.contact];
-            let law = equations.setting.system.law(of.law);
-            for node in 0..interval.nodes.count() {
-                let phase = from + interval.nodes.targets[node] * length;
-                let gap = gaps.gap(active.contact, phase);
+        if interval.active.is_empty() {
+            continue;
+        }
+        for node in 0..interval.nodes.count() {
+            let phase = from + interval.nodes.targets[node] * length;
+            let state = gaps.state(phase);
+            for active in &interval.active {
+                let of = &gaps.values.contacts[active.contact];
+                let law = equations.setting.system.law(of.law);
+                let gap = gaps.gap_of(active.contact, phase, &state);
                 u[active.first + node] = force(law, of, active.piece, gap);
             }
         }

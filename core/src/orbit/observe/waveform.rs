@@ -1,6 +1,6 @@
 //! An output over the period: smooth between the phases at which one of its contacts switches.
 //!
-//! Extremes: samples of each stretch, its ends included, and a golden section next to those samples that might be exceeded.
+//! Extremes: samples of each stretch, its ends included, and parabolas through those samples that might be exceeded.
 //! Means: Gauss rules on parts of each stretch. At a switch a force goes as a power of the distance, so nodes are graded there by
 //! `3 s^2 - 2 s^3`, under which half-integer powers are analytic.
 
@@ -15,7 +15,8 @@ use crate::laws::single;
 use crate::numeric::fourier::crossings::levels::{Cuts, Segment};
 use crate::numeric::fourier::gauss;
 use crate::numeric::fourier::series;
-use crate::numeric::golden;
+use crate::numeric::peak;
+use crate::numeric::roots::Place;
 use crate::system::System;
 
 /// Samples of the shortest wave.
@@ -213,15 +214,21 @@ impl<'o> Waveform<'o> {
             if here < before || here < after || (inside && promise < largest) {
                 continue;
             }
-            let [low, high] = if whole {
-                [place(index) - step, place(index) + step]
-            } else {
-                [
-                    place(index.saturating_sub(1)),
-                    place((index + 1).min(count)),
-                ]
+            let known = |x: f64, index: usize| Place {
+                x,
+                value: values[index],
             };
-            largest = largest.max(golden::largest(at, low, high));
+            let x = place(index);
+            // A signal without switches goes on behind its ends.
+            let ends = if whole {
+                let [before, after] = [(index + count - 1) % count, (index + 1) % count];
+                [known(x - step, before), known(x + step, after)]
+            } else {
+                let around = [index.saturating_sub(1), (index + 1).min(count)];
+                around.map(|index| known(place(index), index))
+            };
+            let between = (ends[0].x < x && x < ends[1].x).then(|| known(x, index));
+            largest = largest.max(peak::largest(at, ends, between));
         }
         largest
     }

@@ -3,6 +3,8 @@
 //!
 //! An acceleration is what the equations of motion give, `q'' = M^-1 ( f - C q' - K q - sum_c e_c phi_c )`.
 
+mod alike;
+
 use nalgebra::DMatrix;
 
 use super::gap::{Gap, Waves};
@@ -51,8 +53,21 @@ struct Contact {
     gap: Gap,
     arguments: Vec<f64>,
     levels: Vec<f64>,
-    /// Its force is in a signal.
-    needed: bool,
+}
+
+/// Some of the signals, and the contacts whose forces they are made of.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Chosen {
+    signals: Vec<usize>,
+    contacts: Vec<usize>,
+    accelerates: bool,
+}
+
+impl Chosen {
+    /// Which signals these are.
+    pub(crate) fn signals(&self) -> &[usize] {
+        &self.signals
+    }
 }
 
 /// Signals of a system at values of its parameters and of `omega`.
@@ -84,13 +99,7 @@ impl<'s> Signals<'s> {
         let signals = terms(system, &coefficients, asked);
         let uses = |signal: fn(&Signal) -> bool| signals.iter().flatten().any(|t| signal(&t.of));
         let accelerates = uses(|of| matches!(of, Signal::Acceleration(_)));
-        let has_force = |contact: usize| {
-            signals
-                .iter()
-                .flatten()
-                .any(|t| t.of == Signal::Force(contact))
-        };
-        let contacts = layout.contacts.iter().enumerate().map(|(index, contact)| {
+        let contacts = layout.contacts.iter().map(|contact| {
             let law = system.law(contact.law);
             let mut arguments = vec![0.0; contact.argument_count];
             contact.arguments(&coefficients, &mut arguments);
@@ -101,7 +110,6 @@ impl<'s> Signals<'s> {
                 gap: Gap::new(contact, &coefficients, base),
                 arguments,
                 levels,
-                needed: accelerates || has_force(index),
             }
         });
         let contacts: Vec<Contact> = contacts.collect();
@@ -142,18 +150,46 @@ impl<'s> Signals<'s> {
         }
     }
 
+    /// Some of the signals.
+    pub(crate) fn choose(&self, signals: impl IntoIterator<Item = usize>) -> Chosen {
+        let signals: Vec<usize> = signals.into_iter().collect();
+        let terms = || signals.iter().flat_map(|&signal| &self.sums[signal]);
+        let accelerates = terms().any(|term| matches!(term.of, Signal::Acceleration(_)));
+        let has_force = |contact: usize| terms().any(|term| term.of == Signal::Force(contact));
+        let contacts = 0..self.contacts.len();
+        let contacts = contacts.filter(|&contact| accelerates || has_force(contact));
+        Chosen {
+            contacts: contacts.collect(),
+            signals,
+            accelerates,
+        }
+    }
+
     /// Writes all signals, with every contact on a piece.
     pub(crate) fn write(&mut self, phase: f64, state: &[f64], pieces: &[usize], out: &mut [f64]) {
-        self.compute_forces(phase, state, pieces);
-        if self.inverse_mass.is_some() {
+        let all = self.choose(0..self.count());
+        self.write_some(&all, phase, state, pieces, out);
+    }
+
+    /// Writes some of the signals, each in its place, with every contact on a piece.
+    pub(crate) fn write_some(
+        &mut self,
+        some: &Chosen,
+        phase: f64,
+        state: &[f64],
+        pieces: &[usize],
+        out: &mut [f64],
+    ) {
+        self.compute_forces(&some.contacts, phase, state, pieces);
+        if some.accelerates {
             self.compute_loads(phase, state);
         }
         let mut waves = Waves::at(phase);
-        for (out, terms) in out.iter_mut().zip(&self.sums) {
-            let values = terms.iter().map(|term| {
+        for &signal in &some.signals {
+            let values = self.sums[signal].iter().map(|term| {
                 term.coefficient * waves.value(term.wave) * self.signal(term.of, state)
             });
-            *out = values.sum();
+            out[signal] = values.sum();
         }
     }
 
@@ -173,12 +209,13 @@ impl<'s> Signals<'s> {
         }
     }
 
-    fn compute_forces(&mut self, phase: f64, state: &[f64], pieces: &[usize]) {
-        let contacts = self.contacts.iter().zip(pieces);
-        for (force, (contact, &piece)) in self.forces.iter_mut().zip(contacts) {
+    fn compute_forces(&mut self, of: &[usize], phase: f64, state: &[f64], pieces: &[usize]) {
+        for &index in of {
+            let (contact, piece) = (&self.contacts[index], pieces[index]);
+            let force = &mut self.forces[index];
             let law = self.system.law(contact.law);
             *force = 0.0;
-            if !contact.needed || law.facts().pieces[piece].force == Variation::Zero {
+            if law.facts().pieces[piece].force == Variation::Zero {
                 continue;
             }
             let (gap, rate) = contact.gap.at(phase, state);
