@@ -11,11 +11,7 @@
 
 use super::integrals::Integrals;
 use crate::contact_equation::linear_part::block::{Pair, add, add_both, times};
-use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::values::{Values, pair, turn};
-
-/// Exponentials at fewer targets are taken one by one.
-const MANY: usize = 4;
 
 /// An interval that begins with these states.
 #[derive(Debug, Clone, Copy)]
@@ -47,8 +43,6 @@ pub(super) struct Targets {
     by_omega: Vec<f64>,
     /// `c` and `k` of every pair.
     kernels: [Vec<f64>; 2],
-    /// The same of one.
-    found: Found,
     /// The steady response by the phase and by the base frequency.
     steady: [Vec<f64>; 2],
     /// Waves in resonance: states, and by the time, by the phase where the interval begins, and by the base frequency.
@@ -71,7 +65,6 @@ impl Targets {
             by_to: all(),
             by_omega: all(),
             kernels: std::array::from_fn(|_| vec![0.0; order / 2 * count]),
-            found: Found::default(),
             steady: std::array::from_fn(|_| all()),
             resonant: std::array::from_fn(|_| all()),
             cosine: one(),
@@ -125,15 +118,15 @@ impl Targets {
             let place = r * self.count..(r + 1) * self.count;
             let kernels = self.kernels.each_mut().map(|of| &mut of[place.clone()]);
             let [c, k] = kernels;
-            if way.psi.len() >= MANY && !block.is_free() {
-                self.found.find(block, way.psi, way.time);
-                c.copy_from_slice(&self.found.c[..self.count]);
-                k.copy_from_slice(&self.found.k[..self.count]);
-            } else {
-                for ((c, k), psi) in c.iter_mut().zip(k).zip(way.psi) {
-                    let kernel = block.kernel(psi * way.time);
-                    (*c, *k) = (kernel.c, kernel.k);
-                }
+            let free = block.is_free();
+            for ((c, k), psi) in c.iter_mut().zip(k).zip(way.psi) {
+                let time = psi * way.time;
+                (*c, *k) = if free {
+                    (1.0, time)
+                } else {
+                    let kernel = block.kernel(time);
+                    (kernel.c, kernel.k)
+                };
             }
             self.compose(way, r, resonant);
         }

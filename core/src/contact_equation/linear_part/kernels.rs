@@ -152,21 +152,20 @@ fn decay_by_angle(angles: &[f64], [mean, per_root]: [f64; 2], [c, k]: [&mut [f64
 /// `e^x` of all lanes.
 #[inline(always)]
 fn powers<const S: usize>(x: &[f64; S]) -> [f64; S] {
-    let mut powers = [0.0; S];
-    for j in 0..S {
-        let x = x[j].clamp(-FARTHEST, FARTHEST);
-        let shifted = x * std::f64::consts::LOG2_E + WHOLE;
-        let n = shifted - WHOLE;
-        let r = (x - n * LN_2[0]) - n * LN_2[1];
-        let scale = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
-        powers[j] = exponential(r) * scale;
-    }
-    powers
+    let x = x.map(|x| x.clamp(-FARTHEST, FARTHEST));
+    let shifted = x.map(|x| x * std::f64::consts::LOG2_E + WHOLE);
+    let r: [f64; S] = lanes(|j| {
+        let n = shifted[j] - WHOLE;
+        (x[j] - n * LN_2[0]) - n * LN_2[1]
+    });
+    let scale = shifted.map(|x| f64::from_bits(x.to_bits().wrapping_add(1023) << 52));
+    let powers = exponentials(&r);
+    lanes(|j| powers[j] * scale[j])
 }
 
-/// `e^r` by its series, by Horner's rule: products of one lane wait for each other, those of all lanes do not, and are taken together.
+/// `e^r` of all lanes by its series. Each sum is taken of all lanes before the next one, so that these are what instructions work on at once.
 #[inline(always)]
-fn exponential(r: f64) -> f64 {
+fn exponentials<const S: usize>(r: &[f64; S]) -> [f64; S] {
     const PER: [f64; 14] = [
         1.0,
         1.0,
@@ -183,11 +182,19 @@ fn exponential(r: f64) -> f64 {
         1.0 / 479_001_600.0,
         1.0 / 6_227_020_800.0,
     ];
-    let mut sum = PER[13];
-    for k in (0..13).rev() {
-        sum = PER[k] + r * sum;
-    }
-    sum
+    let square = r.map(|r| r * r);
+    let pair = |k: usize| r.map(|r| PER[k] + r * PER[k + 1]);
+    let next = |low: [f64; S], high: [f64; S]| lanes(|j| low[j] + square[j] * high[j]);
+    let high = next(pair(8), next(pair(10), pair(12)));
+    let low = next(pair(0), next(pair(2), next(pair(4), pair(6))));
+    let fourth = square.map(|square| square * square);
+    lanes(|j| low[j] + fourth[j] * fourth[j] * high[j])
+}
+
+/// One number for each lane.
+#[inline(always)]
+fn lanes<const S: usize>(of: impl Fn(usize) -> f64) -> [f64; S] {
+    std::array::from_fn(of)
 }
 
 #[cfg(test)]
