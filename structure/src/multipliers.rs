@@ -52,7 +52,7 @@ pub struct ReducedStability {
     /// most: to first order, without unit, beside their own error. Those below 0.1 are not looked at, unless they are the largest. Infinite
     /// where there is no bound: that is so of modes that are made of vectors besides modes, where the first order says nothing, where
     /// multipliers lie next to each other, where the mode is not resolved by 128 times of the period, of orbits over more than two periods, and
-    /// of all with more than 60 vectors. Multipliers beyond the end of this list are those below 0.1.
+    /// of all with more than 60 vectors. Multipliers beyond the end of this list are those below 0.1, and of 130 states or more those that the orbit does not list.
     pub errors: Vec<f64>,
 }
 

@@ -308,19 +308,23 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         self.queue.extend(begins.map(|index| (number, index)));
     }
 
-    /// Goes on with the first branch where it met its limit of orbits, with those that the others have left, and with what begins at it.
-    pub(super) fn go_on(&mut self, keep: Option<Arc<dyn Keep>>) {
-        if self.observer.interrupted || self.points_left == 0 || !self.is_cut() {
+    /// Goes on with the first branch where it met its limit of orbits, with so many of those that are left, and with what begins at it.
+    pub(super) fn go_on(&mut self, keep: Option<Arc<dyn Keep>>, more: usize) {
+        if self.observer.interrupted || more == 0 || !self.is_cut() {
             return;
         }
         let first = &self.diagram.branches[0].branch;
         let [points, events] = [first.points.len(), first.events.len()];
         let resume = first.resume().kept_by(keep);
         let resume = resume.cancel(&self.response.request.cancel);
-        let resume = resume.max_points(points + self.points_left);
-        // Where it cannot go on, it ends at its limit as it does.
-        let Ok(longer) = resume.run_with(|progress| self.observer.see(progress)) else {
-            return;
+        let resume = resume.max_points(points + more);
+        let longer = match resume.run_with(|progress| self.observer.see(progress)) {
+            Ok(longer) => longer,
+            Err(error) => {
+                let last = first.points.last().map_or(f64::NAN, |point| point.value);
+                self.diagram.missed.push((last, Reason::of(error)));
+                return;
+            }
         };
         let more = longer.points.len().saturating_sub(points);
         self.points_left = self.points_left.saturating_sub(more);

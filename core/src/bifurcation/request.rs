@@ -275,6 +275,11 @@ impl<M: OrbitMethod> Bifurcations<M> {
             search.add(Origin::First, 0, branch);
             search.exhaust();
         }
+        let keep = &self.response.request.keep;
+        // What motions settle to has half of what is left.
+        if self.settling.is_some() || !self.searched.is_empty() {
+            search.go_on(keep.clone(), search.points_left / 2);
+        }
         if let Some(settling) = &self.settling {
             search.cover(settling, &self.settled_at);
         }
@@ -286,7 +291,7 @@ impl<M: OrbitMethod> Bifurcations<M> {
         if let Some(settling) = self.settling.as_ref().filter(|settling| settling.solving) {
             search.scatter(settling, &self.settled_at);
         }
-        search.go_on(self.response.request.keep.clone());
+        search.go_on(keep.clone(), search.points_left);
         let mut diagram = search.diagram;
         if let Some(error) = none {
             if diagram.branches.is_empty() {

@@ -26,8 +26,8 @@ const REAL: f64 = 1e-5;
 const TOGETHER: f64 = 1e-6;
 /// Angles of one pair of multipliers differ by less.
 const ALIKE: f64 = 1e-5;
-/// So many times as large as what may be left out.
-const CLEAR: f64 = 1.2;
+/// So many times as large as those that are wanted: a little more than what may be left out.
+const CLEAR: f64 = 1.05 * leading::OTHERS;
 /// Values that differ by this part are one, whatever their errors are.
 const SAME: f64 = 1e-10;
 
@@ -82,20 +82,24 @@ pub(crate) fn distance(
     if multipliers.len().min(others.len()) == states || multipliers.is_empty() {
         return spectrum::distance(multipliers, others);
     }
-    let least = CLEAR * leading::least(multipliers[0].norm());
-    let clear = multipliers.iter().filter(|m| m.norm() > least);
-    let clear: Vec<_> = clear.copied().collect();
+    missed(multipliers, others).max(missed(others, multipliers))
+}
+
+/// How far those that are clearly not small are from their nearest among others, at most.
+fn missed(multipliers: &[Complex<f64>], others: &[Complex<f64>]) -> f64 {
+    let largest = multipliers.first().map_or(0.0, |m| m.norm());
+    let least = CLEAR * leading::least(largest);
     let mut free = others.to_vec();
-    let mut largest = 0.0_f64;
-    for multiplier in &clear {
+    let mut most = 0.0_f64;
+    for multiplier in multipliers.iter().filter(|m| m.norm() > least) {
         let apart = |place: usize| (free[place] - multiplier).norm();
         let nearest = (0..free.len()).min_by(|&i, &j| apart(i).total_cmp(&apart(j)));
         let Some(place) = nearest else {
             return f64::INFINITY;
         };
-        largest = largest.max((free.swap_remove(place) - multiplier).norm());
+        most = most.max((free.swap_remove(place) - multiplier).norm());
     }
-    largest
+    most
 }
 
 /// (1) of the multiplier at a place, those that are missing being too small to be told from zero; not a number where nothing is known.

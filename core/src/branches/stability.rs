@@ -12,9 +12,9 @@ pub struct Stability {
     /// The verdict.
     pub verdict: Verdict,
     /// Floquet multipliers over the orbit's own period, [whole](crate::Orbit::period) periods of the declaration, largest modulus first; those of the orbit corrected for the
-    /// harmonics and samples that were left out. Those of [rigid motions](Self::rigid) are not among them. Of a hundred states or more, by the contact
+    /// harmonics and samples that were left out. Those of [rigid motions](Self::rigid) are not among them. Of 130 states or more, by the contact
     /// equation and by shooting, those alone that are larger than half of the largest, or than a half if the largest is outside of the unit circle: all others are
-    /// shown to be smaller than 0.8 of the same.
+    /// shown to be smaller than 0.8 of the same, and of those between some may be missing.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub multipliers: Vec<Complex<f64>>,
     /// Estimated error of the multipliers: of the integration, and of the orbit's own truncation.

@@ -48,7 +48,7 @@ const BESIDE: [f64; 4] = [-1.0, -0.3, 0.3, 1.0];
 /// has a corner or a jump at a level, and the [harmonic balance](HarmonicBalance) where every force is smooth. At a tolerance of 1e-8 or below it
 /// is the contact equation wherever a force is another function on the other side of a level. Where the stiffness of a law is unbounded on both
 /// sides of a level, as of `sgn(x)*|x|^0.6`, it is [shooting](Shooting), and so it is in place of the contact equation where motions of
-/// the linear part grow by six digits within a period, as those of a buckled beam between stops at a low frequency. Where the contact equation or shooting has no equations for the
+/// the linear part grow by five digits and a half within a period, or so that rounding comes to the tolerance, as those of a buckled beam between stops at a low frequency. Where the contact equation or shooting has no equations for the
 /// system, finds no first orbit, or leads no further, the balance is tried: [`Branch::method`] says what a branch
 /// was followed by.
 ///
@@ -171,7 +171,7 @@ impl Choice {
             Some(Self::ToManyDigits { law })
         });
         let choice = choice.unwrap_or(Self::HarmonicBalance);
-        let grows = || grows(system, &layout, &coefficients, omega, request.period());
+        let grows = || grows(system, &layout, &coefficients, omega, request);
         if choice.method() == OrbitMethodKind::ContactEquation && grows() {
             return Self::Growing;
         }

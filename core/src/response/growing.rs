@@ -15,26 +15,30 @@
 
 use nalgebra::DMatrix;
 
+use crate::branches::request::Request;
 use crate::model::layout::{self, Layout};
 use crate::numeric::spectrum::eigenvalues;
 use crate::system::System;
 
-/// The logarithm of (1) from which on it matters: six of the digits of a number.
+/// The logarithm of (1) from which on it matters: five of the digits of a number and a half, or fewer where as many roundings as these come to the tolerance.
 const MUCH: f64 = 13.0;
+const ROUNDINGS: f64 = 100.0;
 /// Of more coordinates a growth is not looked for.
 const MOST: usize = 60;
 
-/// Whether motions of the linear part grow that much in a period, of `2 pi divisor / omega` so many times.
+/// Whether motions of the linear part grow that much in the period of a request.
 pub(super) fn grows(
     system: &dyn System,
     layout: &Layout,
     coefficients: &[f64],
     omega: f64,
-    periods: usize,
+    request: &Request,
 ) -> bool {
     let divisor = f64::from(system.facts().divisor);
-    let time = std::f64::consts::TAU * divisor * periods as f64 / omega;
-    fastest(layout, coefficients).is_some_and(|growth| growth * time > MUCH)
+    let time = std::f64::consts::TAU * divisor * request.period() as f64 / omega;
+    let seen = (request.tolerance / (ROUNDINGS * f64::EPSILON)).ln();
+    let much = seen.clamp(0.0, MUCH);
+    fastest(layout, coefficients).is_some_and(|growth| growth * time > much)
 }
 
 /// The largest real part in (1); nothing where stiffness and damping show that none is positive, or there is no mass.

@@ -271,7 +271,7 @@ fn compared(
         let spread = part * moduli::distance(&found, &there, map.nrows())
             + nearest.fold(f64::INFINITY, f64::min)
             + error_reference::moved(&map, &found, parts, noise * map.norm().max(1.0));
-        read.stability = problem.stability(found, spread);
+        read.stability = problem.stability(found, map.nrows(), spread);
     }
     Some((read, error))
 }

@@ -125,9 +125,15 @@ impl ShootingProblem {
         }
     }
 
-    /// The verdict that the multipliers of a map allow, largest first, where they are known to this error.
-    pub(crate) fn stability(&self, mut multipliers: Vec<Complex<f64>>, error: f64) -> Stability {
-        multipliers.truncate(multipliers.len().saturating_sub(self.rigid));
+    /// The verdict that the multipliers of a map of so many states allow, largest first, where they are known to this error.
+    pub(crate) fn stability(
+        &self,
+        mut multipliers: Vec<Complex<f64>>,
+        states: usize,
+        error: f64,
+    ) -> Stability {
+        // Those of rigid motions are zero there, and not among the larger ones where these are known alone.
+        multipliers.truncate(states.saturating_sub(self.rigid));
         Stability {
             rigid: self.rigid,
             ..Stability::of(multipliers, error)

@@ -264,7 +264,7 @@ impl<'r> Run<'r> {
         point.stability = if found.is_empty() {
             Stability::unknown()
         } else {
-            problem.stability(found, spread)
+            problem.stability(found, map.nrows(), spread)
         };
         Ok((point, Some(map)))
     }

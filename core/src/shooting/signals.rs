@@ -71,6 +71,8 @@ pub(crate) struct Reader<'s> {
     images: Vec<Image>,
     /// Which channel each is, of those that are looked at.
     same: Vec<usize>,
+    /// The signals that each channel is looked at for.
+    sharers: Vec<Vec<usize>>,
     /// Periods of the declaration.
     period: usize,
     found: Vec<Found>,
@@ -151,6 +153,7 @@ impl<'s> Reader<'s> {
         let later = TAU * *period as f64 / *parts as f64;
         let count = signals.count();
         let same = same(&signals, recurrence, later);
+        let sharers = sharers(&same, signals.count());
         let images = (0..*parts).map(|part| Image {
             of: image.power(part),
             chosen: signals.choose((0..count).filter(|of| {
@@ -172,6 +175,7 @@ impl<'s> Reader<'s> {
         Self {
             images: images.collect(),
             alone: (0..count).map(|of| signals.choose([of])).collect(),
+            sharers,
             same,
             period: *period,
             found: vec![found; count],
@@ -416,8 +420,9 @@ impl<'s> Reader<'s> {
             self.write(stretch, phase, values);
         }
         let mut row = vec![0.0; count];
-        for channel in 0..channels {
-            if !self.is_looked_at(channel) {
+        let sharers = std::mem::take(&mut self.sharers);
+        for (channel, sharers) in sharers.iter().enumerate() {
+            if sharers.is_empty() {
                 continue;
             }
             let mut samples = [[0.0; 2]; 2 * NODES + 2];
@@ -429,21 +434,34 @@ impl<'s> Reader<'s> {
                         [nodes.phases[index], nodes.at(index, channel)];
                 }
             }
-            let mut motion = self.found[channel % count].motion;
-            for [_, value] in &samples {
-                motion.include(*value);
-            }
+            self.include_in(sharers, samples.iter().map(|[_, value]| *value));
             for sign in [1.0, -1.0] {
-                let known = if sign > 0.0 {
-                    motion.maximum
-                } else {
-                    -motion.minimum
-                };
+                let known = sharers.iter().map(|signal| {
+                    let motion = &self.found[*signal].motion;
+                    if sign > 0.0 {
+                        motion.maximum
+                    } else {
+                        -motion.minimum
+                    }
+                });
+                // What one of them has seen elsewhere, others may not have.
+                let known = known.fold(f64::INFINITY, f64::min);
                 let mut at = |phase: f64| sign * self.value(stretch, phase, channel, &mut row);
                 let largest = largest(&samples, sign, known, &mut at);
-                motion.include(sign * largest);
+                if largest > known {
+                    self.include_in(sharers, [sign * largest]);
+                }
             }
-            self.found[channel % count].motion = motion;
+        }
+        self.sharers = sharers;
+    }
+
+    /// Includes values in the extremes of signals.
+    fn include_in(&mut self, signals: &[usize], values: impl IntoIterator<Item = f64>) {
+        for value in values {
+            for signal in signals {
+                self.found[*signal].motion.include(value);
+            }
         }
     }
 }
@@ -476,6 +494,18 @@ fn same(signals: &Signals<'_>, recurrence: &Recurrence, later: f64) -> Vec<usize
         }
     }
     same
+}
+
+/// For every channel the signals that it is looked at for, of so many.
+fn sharers(same: &[usize], count: usize) -> Vec<Vec<usize>> {
+    let mut sharers = vec![Vec::new(); same.len()];
+    for (channel, root) in same.iter().enumerate() {
+        let signal = channel % count;
+        if !sharers[*root].contains(&signal) {
+            sharers[*root].push(signal);
+        }
+    }
+    sharers
 }
 
 /// The largest value near samples, or the one that is known.

@@ -18,9 +18,12 @@ use nalgebra::Complex;
 use super::seen::Seen;
 use crate::branches::problem::TestValue;
 
-/// Of more pairs than this those are looked at whose logarithms are not so far below the largest one, or below the circle if the largest is outside.
+/// Of more pairs than this those are looked at whose logarithms are not so far below the largest one, or below the circle if the largest is outside:
+/// at most, and at least.
 const FEW: usize = 8;
-const SMALL: f64 = -1.0;
+const SMALL: [f64; 2] = [-1.0, -0.2];
+/// And so far above the smallest one that is known.
+const CUT: f64 = 0.5;
 
 /// Two pairs of multipliers of one orbit.
 #[derive(Debug, Clone, Copy)]
@@ -35,9 +38,13 @@ impl Meeting {
     /// All of an orbit; where there are many, those of the larger ones.
     pub(super) fn all(seen: &Seen, noise: f64) -> Vec<Self> {
         let pairs = seen.pairs.as_deref().unwrap_or_default();
-        let largest = pairs.iter().map(|pair| pair.re).reduce(f64::max);
         let few = pairs.len() <= FEW;
-        let least = largest.map_or(f64::NAN, |largest| largest.min(0.0) + SMALL);
+        let sizes = || pairs.iter().map(|pair| pair.re);
+        let largest = sizes().fold(f64::NEG_INFINITY, f64::max).min(0.0);
+        // Where small ones are left out, those that are about to be have no others beside them.
+        let smallest = sizes().fold(f64::INFINITY, f64::min) - largest;
+        let [far, near] = SMALL;
+        let least = largest + (smallest + CUT).clamp(far, near);
         let counts = |pair: &&Complex<f64>| few || pair.re > least;
         let pairs: Vec<_> = pairs.iter().filter(counts).collect();
         let mut all = Vec::new();

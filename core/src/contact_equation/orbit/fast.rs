@@ -168,6 +168,9 @@ impl Fast {
 impl Alone {
     /// Of what a unit force does to all states; none where it moves none of some pairs.
     fn of(input: &[f64], pairs: &[usize]) -> Option<Self> {
+        if input.is_empty() {
+            return None;
+        }
         let input = [0, 1].map(|i| -> Vec<f64> {
             let states = pairs.iter().map(|r| input[2 * r + i]);
             states.collect()

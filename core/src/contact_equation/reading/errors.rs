@@ -24,6 +24,8 @@ use crate::continuation::follow::CurvePoint;
 use crate::numeric::roots::Place;
 use crate::orbit::observe::Accuracy;
 
+/// A growth by more is no number to be computed with.
+const LARGEST: f64 = 300.0;
 /// Roundings of states at the beginning, of which finer equations have as many.
 const GROWN: f64 = 100.0;
 /// Roundings of an output in a configuration.
@@ -117,7 +119,9 @@ impl Run<'_> {
     pub(in crate::contact_equation) fn grown(&self) -> f64 {
         let blocks = self.equations.values.linear.blocks.iter();
         let growth = blocks.map(|block| block.growth()).fold(0.0, f64::max);
-        GROWN * f64::EPSILON * (growth * self.equations.skeleton.length).exp_m1()
+        // Exponents are by time.
+        let time = self.equations.skeleton.length / self.equations.values.base;
+        GROWN * f64::EPSILON * (growth * time).min(LARGEST).exp_m1()
     }
 
     /// How far the output that the error is of is from that among others.

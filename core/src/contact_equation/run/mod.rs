@@ -85,7 +85,10 @@ impl<'r> Run<'r> {
     /// Whether the errors of a point ask for more nodes, and there are more. They are of no use where no force is unknown.
     pub(super) fn is_coarse(&self, point: &Point) -> bool {
         let has_nodes = self.equations.skeleton.forces > 0;
-        has_nodes && self.resolution + 1 < RESOLUTIONS.len() && self.excess(point) > 1.0
+        // What rounding has grown to is as large with more of them.
+        let rounding = self.grown() / self.problem.tolerance;
+        let may_be_finer = has_nodes && self.resolution + 1 < RESOLUTIONS.len();
+        may_be_finer && self.excess(point) > 1.0 + rounding
     }
 
     /// What it remembers beside its equations: what was varied where finer ones were made, and what these have said.

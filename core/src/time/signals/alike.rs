@@ -112,13 +112,16 @@ fn has_law_of(of: &Contact, other: &Contact) -> bool {
     of.law == other.law && pairs.all(|(a, b)| (a - b).abs() <= SAME * a.abs().max(b.abs()))
 }
 
+/// Whether amplitudes of each thing are equal, to rounding of the largest of them.
 fn are_equal(a: &Amplitudes, b: &Amplitudes) -> bool {
-    let sizes = a.values().chain(b.values()).map(|z| z.norm());
-    let most = SAME * sizes.fold(0.0, f64::max);
     let zero = Complex::new(0.0, 0.0);
+    let size = |of: usize| {
+        let alike = a.iter().chain(b).filter(|((other, _), _)| *other == of);
+        alike.map(|(_, z)| z.norm()).fold(0.0, f64::max)
+    };
     let near = |of: &Amplitudes, other: &Amplitudes| {
         let mut entries = of.iter();
-        entries.all(|(key, z)| (z - other.get(key).unwrap_or(&zero)).norm() <= most)
+        entries.all(|(key, z)| (z - other.get(key).unwrap_or(&zero)).norm() <= SAME * size(key.0))
     };
     near(a, b) && near(b, a)
 }

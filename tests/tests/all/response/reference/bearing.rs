@@ -54,6 +54,22 @@ fn all_and_no_more(branch: &Branch, [a, b]: [f64; 2], digits: f64) {
     }
 }
 
+/// Every ball carries the load once in a turn of the cage, as every other one does.
+fn balls_are_alike(branch: &Branch) {
+    for point in &branch.points {
+        let [first, others @ ..] = &point.observed.contacts[..] else {
+            panic!("no contacts");
+        };
+        assert!(first.peak_force > 0.1, "{}", first.peak_force);
+        for other in others {
+            let apart = (other.peak_force / first.peak_force - 1.0).abs();
+            assert!(apart < 1e-9, "{} {apart:e}", point.value);
+            assert!((other.minimum_force - first.minimum_force).abs() < 1e-9);
+            assert!((other.fraction - first.fraction).abs() < 1e-9);
+        }
+    }
+}
+
 #[test]
 fn both_folds_are_found() {
     by_shooting(FOLDS, OF_FOLDS);
@@ -80,6 +96,7 @@ fn the_contact_equation_finds_all() {
     ] {
         for branch in from_either_end(&request, range) {
             all_and_no_more(&branch, range, digits);
+            balls_are_alike(&branch);
         }
     }
 }
@@ -116,6 +133,7 @@ fn by_shooting(range: [f64; 2], digits: f64) {
     let request = FrequencyResponse::of(&model).by(Shooting::new());
     for branch in from_either_end(&request.max_points(120), range) {
         all_and_no_more(&branch, range, digits);
+        balls_are_alike(&branch);
     }
 }
 
