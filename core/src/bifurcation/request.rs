@@ -7,6 +7,7 @@ use super::cover::Settling;
 use super::diagram::{Diagram, Limits, Observer, Origin, Reason, Search};
 use crate::attractors::basin::{Basin, Basins, Moving, Visit};
 use crate::bifurcation::error::BifurcationError;
+use crate::branches::branch::Branch;
 use crate::branches::progress::Progress;
 use crate::cancel::Cancel;
 use crate::continuation::step_control;
@@ -237,21 +238,10 @@ impl<M: OrbitMethod> Bifurcations<M> {
         self.check()?;
         self.check_searched([from, to])?;
         let mut seen = Observer::new(&mut visit);
-        // One that creeps leaves some for all others.
-        let points = if self.points >= MANY {
-            self.points / 2
-        } else {
-            self.points.max(2)
-        };
-        let first = self.response.clone().max_points(points);
-        let found = first.run_with(|progress| seen.see(progress));
-        // Without a first branch the range may be covered by others.
-        let optional = |error: &Error| {
-            self.settling.is_some() && matches!(error.kind(), ErrorKind::NoOrbit | ErrorKind::Limit)
-        };
-        let (branch, none) = match found {
+        let (branch, none) = match self.first(&mut seen) {
             Ok(branch) => (Some(branch), None),
-            Err(error) if optional(&error) => (None, Some(error)),
+            // Without a first branch the range may be covered by others.
+            Err(error) if self.may_do_without(&error) => (None, Some(error)),
             Err(error) => return Err(error),
         };
         let [low, high] = self.wider(from, to)?;
@@ -275,23 +265,7 @@ impl<M: OrbitMethod> Bifurcations<M> {
             search.add(Origin::First, 0, branch);
             search.exhaust();
         }
-        let keep = &self.response.request.keep;
-        // What motions settle to has half of what is left.
-        if self.settling.is_some() || !self.searched.is_empty() {
-            search.go_on(keep.clone(), search.points_left / 2);
-        }
-        if let Some(settling) = &self.settling {
-            search.cover(settling, &self.settled_at);
-        }
-        for &(value, ref basin) in &self.searched {
-            if let Err(reason) = self.add_attractors(&mut search, value, basin, &mut watch) {
-                search.diagram.missed.push((value, reason));
-            }
-        }
-        if let Some(settling) = self.settling.as_ref().filter(|settling| settling.solving) {
-            search.scatter(settling, &self.settled_at);
-        }
-        search.go_on(keep.clone(), search.points_left);
+        self.search_range(&mut search, &mut watch);
         let mut diagram = search.diagram;
         if let Some(error) = none {
             if diagram.branches.is_empty() {
@@ -302,6 +276,43 @@ impl<M: OrbitMethod> Bifurcations<M> {
         diagram.uncovered = diagram.without_orbits([from, to]);
         diagram.elapsed = started.elapsed();
         Ok(diagram)
+    }
+
+    /// The first branch. One that creeps leaves some orbits for all others.
+    fn first(&self, seen: &mut Observer<'_>) -> Result<Branch, Error> {
+        let points = if self.points >= MANY {
+            self.points / 2
+        } else {
+            self.points.max(2)
+        };
+        let first = self.response.clone().max_points(points);
+        first.run_with(|progress| seen.see(progress))
+    }
+
+    /// Whether the range may be covered without a first branch.
+    fn may_do_without(&self, error: &Error) -> bool {
+        self.settling.is_some() && matches!(error.kind(), ErrorKind::NoOrbit | ErrorKind::Limit)
+    }
+
+    /// What motions settle to, and what is left of the first branch.
+    fn search_range(&self, search: &mut Search<'_, M>, visit: Visit<'_>) {
+        let keep = &self.response.request.keep;
+        // What motions settle to has half of what is left.
+        if self.settling.is_some() || !self.searched.is_empty() {
+            search.go_on(keep.clone(), search.points_left / 2);
+        }
+        if let Some(settling) = &self.settling {
+            search.cover(settling, &self.settled_at);
+        }
+        for &(value, ref basin) in &self.searched {
+            if let Err(reason) = self.add_attractors(search, value, basin, &mut *visit) {
+                search.diagram.missed.push((value, reason));
+            }
+        }
+        if let Some(settling) = self.settling.as_ref().filter(|settling| settling.solving) {
+            search.scatter(settling, &self.settled_at);
+        }
+        search.go_on(keep.clone(), search.points_left);
     }
 
     /// Where motions are followed from a grid is in the range, and can be.

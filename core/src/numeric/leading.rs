@@ -208,7 +208,7 @@ impl Krylov {
         let others = self.basis.columns(0, columns);
         for _ in 0..3 {
             let parts = others.tr_mul(&vector);
-            vector -= &others * parts;
+            vector -= others * parts;
         }
         (vector.norm() > DEPENDENT * before).then_some(vector)
     }
@@ -252,7 +252,7 @@ impl Krylov {
         let Some(form) = Triangular::of(h) else {
             return Outcome::NotYet;
         };
-        let largest = form.values().map(|value| value.norm()).fold(0.0, f64::max);
+        let largest = form.values().map(Complex::norm).fold(0.0, f64::max);
         let least = least(largest);
         let is_wanted = |place: &usize| form.t[(*place, *place)].norm() > least;
         let wanted: Vec<usize> = (0..size).filter(is_wanted).collect();

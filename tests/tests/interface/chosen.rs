@@ -133,7 +133,8 @@ fn what_rounding_grows_to_is_stated() {
         let off = (found.peak_to_peak() / exact.peak_to_peak() - 1.0).abs();
         let errors = [found, exact].map(|point| point.error.unwrap());
         assert!(off <= errors[0] + errors[1], "{omega}: {off:e} {errors:?}");
-        let grown = f64::EPSILON * (0.8828 * std::f64::consts::TAU / omega).exp();
+        let followed = std::f64::consts::TAU / omega / found.orbit.parts as f64;
+        let grown = f64::EPSILON * (0.8828 * followed).exp();
         assert!(errors[0] >= grown, "{omega}: {errors:?}");
     }
 }

@@ -17,6 +17,7 @@ use crate::branches::moduli::{self, multipliers};
 use crate::branches::observed::{EXTREMES, Motion as Extent, Observed};
 use crate::branches::point::Point;
 use crate::contact_equation::equations::Equations;
+use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::orbit::extremes::extremes_of;
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::run::{DIFFERENCE, Run};
@@ -118,7 +119,7 @@ impl Run<'_> {
     /// What rounding of the states at the beginning of a period has come to at its end, relative to them, where motions of the linear part grow.
     pub(in crate::contact_equation) fn grown(&self) -> f64 {
         let blocks = self.equations.values.linear.blocks.iter();
-        let growth = blocks.map(|block| block.growth()).fold(0.0, f64::max);
+        let growth = blocks.map(Block::growth).fold(0.0, f64::max);
         // Exponents are by time.
         let time = self.equations.skeleton.length / self.equations.values.base;
         GROWN * f64::EPSILON * (growth * time).min(LARGEST).exp_m1()

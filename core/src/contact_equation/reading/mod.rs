@@ -194,8 +194,7 @@ impl Run<'_> {
         let noise = if moves { self.noise(&point) } else { 0.0 };
         let size = self.size(&point, noise);
         let parts = self.equations.skeleton.recurrence().parts;
-        let found = map.as_ref();
-        let found = found.map(|map| self.last_map.multipliers(map, parts));
+        let found = (map.as_ref()).map(|map| self.last_map.multipliers(map, parts));
         let of_map = found.as_deref().filter(|_| at_value && shift != 0.0);
         let steepness = self.steepness(at, &point, of_map).unwrap_or(Steepness {
             peak_to_peak: self.rise(&point),
@@ -206,10 +205,8 @@ impl Run<'_> {
         point.error = Some(stated(error));
         let mut spread = 0.0;
         if let Some((map, found)) = map.as_ref().zip(found) {
-            let rounding = self.grown() * parts as f64 * map.norm().max(1.0);
-            let moved = moved + rounding;
-            let finer = finer_map.as_ref();
-            (point.stability, spread) = stability(map, found, finer, parts, moved);
+            let moved = moved + self.grown() * parts as f64 * map.norm().max(1.0);
+            (point.stability, spread) = stability(map, found, finer_map.as_ref(), parts, moved);
         }
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
