@@ -12,6 +12,7 @@ use super::signals::{Found, Reader};
 use super::start;
 use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
+use crate::branches::observed::Motion;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::error::Error;
@@ -33,7 +34,7 @@ const HARMONICS: usize = 20;
 /// If the motion cannot be computed.
 pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point, Error> {
     let (outputs, closed) = read(problem, point, Asked::Outputs, 0)?;
-    let outputs = outputs.motions();
+    let outputs = kept(&point.observed.outputs, outputs.motions());
     let (given, point) = (point, &closed);
     let coordinates = point.orbit.coordinates;
     let divisor = problem.divisor as usize;
@@ -88,6 +89,16 @@ pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point
         observed,
         ..given.clone()
     })
+}
+
+/// What was read of outputs together with the orbit, which its error is of; what was looked for where that is not all.
+fn kept(read: &[Motion], looked_for: Vec<Motion>) -> Vec<Motion> {
+    let is_whole = |motion: &Motion| motion.mean.is_some() && motion.rms.is_some();
+    if read.len() == looked_for.len() && read.iter().all(is_whole) {
+        read.to_vec()
+    } else {
+        looked_for
+    }
 }
 
 /// Signals of an orbit of shooting, with the harmonics that [`complete`] keeps.
