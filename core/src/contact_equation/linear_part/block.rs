@@ -19,7 +19,11 @@
 //! r(s) = (phi(f) - phi(n)) / (f - n),    phi(e) = int_0^s e^(e u) e^(i w (s - u)) du = s e^(i w s) E((e - i w) s)       (3)
 //! ```
 //!
-//! with `E(z) = (e^z - 1) / z`.
+//! with `E(z) = (e^z - 1) / z`. Under a constant load, where neither does much within the time, `k` is integrated term by term,
+//!
+//! ```text
+//! k(s) = sum_n h_n s^(n + 1) / (n + 1)!,    h_n = tr A h_(n - 1) - det A h_(n - 2),    h_0 = 1, h_(-1) = 0        (4)
+//! ```
 //!
 //! Sources: Higham (2008), Functions of Matrices, section 1.2 (equation 1.10, interpolation of Hermite) and equation (10.51) for `E`;
 //! Higham (2002), Accuracy and Stability of Numerical Algorithms, section 1.8 for the roots.
@@ -372,11 +376,31 @@ impl Block {
             return by_exponents(exponents, frequency, s);
         }
         let wave = Complex::new(0.0, frequency);
-        let [r, by] = self.by_rule(frequency, s);
+        let [r, by] = if frequency == 0.0 && self.rate() * s.abs() <= 1.0 {
+            self.by_series(s)
+        } else {
+            self.by_rule(frequency, s)
+        };
         let k = self.kernel(s).k;
         let p = k + (wave - self.mean) * r;
         let p_by = (wave - self.mean) * by + r * Complex::new(0.0, 1.0);
         [p, r, p_by, by]
+    }
+
+    /// `r` of (2) under a constant load and its derivative, by (4).
+    fn by_series(&self, s: f64) -> [Complex<f64>; 2] {
+        let (trace, determinant) = (2.0 * self.mean * s, self.determinant * s * s);
+        let (mut before, mut term) = (0.0, 1.0);
+        let mut factor = 0.5 * s * s;
+        let (mut r, mut by) = (0.0, 0.0);
+        for n in 0..TERMS {
+            let next = factor / f64::from(n + 3);
+            r += factor * term;
+            by += next * s * term;
+            factor = next;
+            (before, term) = (term, trace * term - determinant * before);
+        }
+        [Complex::new(r, 0.0), Complex::new(0.0, by)]
     }
 
     /// `r` of (2) and its derivative, by rules of Gauss.
@@ -430,7 +454,7 @@ fn quotient(z: Complex<f64>) -> (Complex<f64>, Complex<f64>) {
     let zero = Complex::new(0.0, 0.0);
     let (mut value, mut slope, mut term) = (zero, zero, Complex::new(1.0, 0.0));
     for n in 0..TERMS {
-        let n = n as f64;
+        let n = f64::from(n);
         value += term / (n + 1.0);
         slope += term / (n + 2.0);
         term *= z / (n + 1.0);
@@ -438,8 +462,8 @@ fn quotient(z: Complex<f64>) -> (Complex<f64>, Complex<f64>) {
     (value, slope)
 }
 
-/// Terms of the series of `E` for arguments up to one.
-const TERMS: usize = 18;
+/// Terms of the series of `E`, and of (4), for arguments up to one.
+const TERMS: u32 = 18;
 
 /// Exponents as near as this to a frequency, relative to both, are in resonance.
 const NEAR: f64 = 1e-5;
@@ -514,6 +538,23 @@ mod tests {
             let [p0, r0, ..] = block.response_at_rest(frequency - h, s);
             assert!(((p1 - p0) / (2.0 * h) - p_by).norm() < 1e-8);
             assert!(((r1 - r0) / (2.0 * h) - r_by).norm() < 1e-8);
+        }
+    }
+
+    /// Under a constant load, where both exponents do little: rules of Gauss tell the same.
+    #[test]
+    fn responses_by_series_are_those_by_rules() {
+        let none = [[0.0, 1.0], [0.0, -1e-9]];
+        for matrix in CASES.iter().chain([&none]) {
+            let block = Block::new(*matrix);
+            for part in [1.0, 0.4, 1e-3] {
+                let s = part / block.rate().max(1e-3);
+                let [r, by] = block.by_series(s);
+                let [exact, exact_by] = block.by_rule(0.0, s);
+                assert!((r - exact).norm() <= 1e-15 * exact.norm(), "{matrix:?} {s}");
+                assert!((by - exact_by).norm() <= 1e-15 * exact_by.norm());
+            }
+            assert_eq!(block.by_series(0.0)[0].re, 0.0);
         }
     }
 

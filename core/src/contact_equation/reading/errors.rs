@@ -14,13 +14,14 @@
 use nalgebra::Complex;
 
 use crate::branches::moduli::{self, multipliers};
-use crate::branches::observed::{EXTREMES, Motion as Extent, Observed};
+use crate::branches::observed::{EXTREMES, Motion as Extent, Observed, part_of};
 use crate::branches::point::Point;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::orbit::extremes::extremes_of;
 use crate::contact_equation::orbit::motion::Motion;
-use crate::contact_equation::run::{DIFFERENCE, Run};
+use crate::contact_equation::run::error_estimate::SAFETY;
+use crate::contact_equation::run::{DIFFERENCE, MULTIPLIERS, Run};
 use crate::continuation::follow::CurvePoint;
 use crate::numeric::roots::Place;
 use crate::orbit::observe::Accuracy;
@@ -123,6 +124,22 @@ impl Run<'_> {
         // Exponents are by time.
         let time = self.equations.skeleton.length / self.equations.values.base;
         GROWN * f64::EPSILON * (growth * time).min(LARGEST).exp_m1()
+    }
+
+    /// Whether the branch is so steep that rounding of what is varied alone makes errors at its value larger than is asked for.
+    pub(in crate::contact_equation) fn is_vertical(
+        &self,
+        point: &Point,
+        steepness: &Steepness,
+        size: f64,
+    ) -> bool {
+        let [along, moved] = steepness.along(f64::EPSILON * point.value);
+        let multipliers = point.stability.multipliers.iter().map(|m| m.norm());
+        let largest = multipliers.fold(1.0, f64::max);
+        let errors = [part_of(along, size), moved / (MULTIPLIERS * largest)];
+        errors
+            .into_iter()
+            .any(|error| SAFETY * error > self.problem.tolerance)
     }
 
     /// How far the output that the error is of is from that among others.

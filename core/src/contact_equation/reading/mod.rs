@@ -208,6 +208,11 @@ impl Run<'_> {
             let moved = moved + self.grown() * parts as f64 * map.norm().max(1.0);
             (point.stability, spread) = stability(map, found, finer_map.as_ref(), parts, moved);
         }
+        if self.is_vertical(&point, &steepness, size) {
+            let own = part_of(SAFETY * apart + noise, size);
+            let of_multipliers = (point.stability.error - SAFETY * moved).max(0.0);
+            self.own_errors = Some([own, of_multipliers]);
+        }
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
             stiffness,
@@ -297,6 +302,7 @@ impl Run<'_> {
 
     /// An orbit without its errors, and the map of its states if stability is asked for.
     fn read_plainly(&mut self, at: &CurvePoint) -> Option<(Point, Option<DMatrix<f64>>)> {
+        self.own_errors = None;
         let map = if self.problem.asked.stability {
             self.statistics.monodromies += 1;
             Some(self.equations.map(&at.u)?)

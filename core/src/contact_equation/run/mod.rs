@@ -25,7 +25,7 @@ pub(super) const DIFFERENCE: f64 = 1e-5;
 
 /// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
 /// events are seen that are none.
-const MULTIPLIERS: f64 = 100.0;
+pub(super) const MULTIPLIERS: f64 = 100.0;
 
 /// What a branch has gathered, and the equations that it is followed by.
 pub(super) struct Run<'r> {
@@ -41,6 +41,9 @@ pub(super) struct Run<'r> {
     pub(super) last_map: LastMap,
     pub(super) record: Record,
     pub(super) statistics: Statistics,
+    /// Errors of the orbit that was read last, and of its multipliers, apart from those of its value, where these cannot be as small as is asked
+    /// for: the branch is vertical, and no nodes make its value better known than rounding.
+    pub(super) own_errors: Option<[f64; 2]>,
     /// What the branch has met.
     pub(super) joined: Option<Recurrence>,
     /// Where the law of each contact may have narrow places.
@@ -68,17 +71,20 @@ impl<'r> Run<'r> {
             last_map: LastMap::default(),
             record: Record::default(),
             statistics: Statistics::default(),
+            own_errors: None,
             joined: None,
         }
     }
 
-    /// How many times as large as the tolerance the errors of a point are.
+    /// How many times as large as the tolerance the errors of a point are, of those that nodes decide.
     pub(super) fn excess(&self, point: &Point) -> f64 {
         let sizes = point.stability.multipliers.iter().map(|m| m.norm());
         let largest = sizes.fold(1.0, f64::max);
         let asked = self.problem.asked.stability;
-        let spread = if asked { point.stability.error } else { 0.0 };
-        let errors = [point.error.unwrap_or(0.0), spread / (MULTIPLIERS * largest)];
+        let stated = [point.error.unwrap_or(0.0), point.stability.error];
+        let [error, of_multipliers] = self.own_errors.unwrap_or(stated);
+        let spread = if asked { of_multipliers } else { 0.0 };
+        let errors = [error, spread / (MULTIPLIERS * largest)];
         errors[0].max(errors[1]) / self.problem.tolerance
     }
 
