@@ -24,6 +24,11 @@ pub(crate) fn part_of(error: f64, measure: f64) -> f64 {
 pub struct Observed {
     /// One entry per coordinate.
     pub motions: Vec<Motion>,
+    /// Whether all but the first of them are of 32 phases a period, as by the contact equation where
+    /// [accuracy](crate::FrequencyResponse::accuracy_of) is asked of an output: no error is of coordinates then.
+    /// [`Branch::complete`](crate::Branch::complete) reads them.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub sampled: bool,
     /// One entry per output of the system; none where only the extremes of the coordinates were read off. Between switches of contacts an
     /// output is smooth, and its extremes, mean and root of the mean square are those of the output itself.
     #[cfg_attr(feature = "serde", serde(default))]
@@ -50,6 +55,7 @@ impl Observed {
     pub(crate) fn extremes(motions: Vec<Motion>, switches: usize) -> Self {
         Self {
             motions,
+            sampled: false,
             outputs: Vec::new(),
             contacts: Vec::new(),
             on_pieces: Vec::new(),

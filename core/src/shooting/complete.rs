@@ -67,7 +67,12 @@ pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point
     );
     balance.set(point.value);
     let mut observed = Observer::default().observe(&mut balance, &u);
-    let parts = samples.chunks_exact(count).zip(&point.observed.motions);
+    let extremes = if point.observed.sampled {
+        read_along(problem, point, Asked::Coordinates)?.motions()
+    } else {
+        point.observed.motions.clone()
+    };
+    let parts = samples.chunks_exact(count).zip(&extremes);
     for (motion, (samples, extremes)) in observed.motions.iter_mut().zip(parts) {
         let square: f64 = samples.iter().map(|x| x * x).sum();
         motion.maximum = extremes.maximum;

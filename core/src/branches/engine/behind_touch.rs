@@ -15,7 +15,8 @@
 //! di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2.
 
 use super::Engine;
-use super::inside::{CLOSE, Height, LOOKS, in_doubt, is_on_way, noise_of, step_between};
+use super::heights::{Height, in_doubt};
+use super::inside::{CLOSE, LOOKS, is_on_way, noise_of, step_between};
 use super::seen::Seen;
 use crate::branches::problem::{BranchProblem, Test};
 use crate::continuation::locate::{ArcLength, inside_over};

@@ -4,7 +4,8 @@
 //! points, as of a test function that may pass zero twice: see (1) of [`inside`](super::inside).
 
 use super::grazing::Gaps;
-use super::inside::{CLOSE, Height, LOOKS, distance, in_doubt};
+use super::heights::{Height, in_doubt};
+use super::inside::{CLOSE, LOOKS, distance};
 use crate::branches::extreme::Extreme;
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::Step;

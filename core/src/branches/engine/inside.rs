@@ -1,33 +1,15 @@
 //! What lies between two points that the signs of test functions at both do not show.
 //!
-//! A function that has one sign at both ends of a step may have passed zero twice: two folds, or two bifurcations of a kind. With a second
-//! difference `c` that is at most so large between two points, `l` apart with heights `p` and `q` above zero, it stays above
-//!
-//! ```text
-//! p + (q - p) s / l - c s (l - s)                                                                            (1)
-//! ```
-//!
-//! The second difference of three successive points is trusted to a factor. Where a level is touched between two points the function may have a
-//! kink, to which no second difference is a bound. If it is convex all the same it stays above the chords of the parts beside. It need not be, and
-//! falls the faster the nearer to the kink then: with slopes `m < 0` before and `n > 0` behind, or that of the part where that is steeper, both times `t = 2`,
-//! it is looked at if
-//!
-//! ```text
-//! p + t m s,     q - t n (l - s),                                                                              (2)
-//! ```
-//!
-//! which meet where `s = (q - p - t n l) / (t (m - n))`, come down to zero. Where (1) or (2) comes down to zero, the orbit there is computed, and both parts are looked at
-//! with the differences that are known then, until one has the other sign or all stay above. It may be in the step before the last one, since a
-//! point beside the second zero says nothing until the next one is known.
+//! A function that has one sign at both ends of a step may have passed zero twice: two folds, or two bifurcations of a kind. Where its
+//! [heights](super::heights) above zero at three successive points leave that open, the orbit there is computed, and both parts are looked at
+//! with what is known then, until one has the other sign or all stay above. It may be in the step before the last one, since a
+//! point beside the second zero says nothing until the next one is known. Orbits that were looked at for one function are known to all others.
 //!
 //! Where a branch turns and the bordered determinant changes its sign as well, that is one place, where it ends on another branch, or
 //! two, a fold and a crossing: orbits on both sides of the turn tell.
-//!
-//! Source: (1) is the error bound of linear interpolation, as Piyavskii (1972), An algorithm for finding the absolute extremum of a
-//! function, uses it with a bound on the first derivative. (2), with `t = 1`, are the two lines below a convex function of Rote (1992), The convergence rate of
-//! the sandwich algorithm for approximating convex functions.
 
 use super::Engine;
+use super::heights::{Height, in_doubt};
 use super::meeting::Meeting;
 use super::seen::{Former, Seen, changes, signs};
 use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
@@ -36,15 +18,9 @@ use crate::continuation::locate::{ArcLength, inside, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::event::EventKind;
 
-/// A second difference may be so many times as large between the points that it was taken of.
-const TRUSTED: f64 = 3.0;
-/// `t` of (2)
-const STEEPER: f64 = 2.0;
 /// So many orbits, and until they come this near to each other, as a part of the step.
 pub(super) const LOOKS: usize = 6;
 pub(super) const CLOSE: f64 = 1e-3;
-/// The nearest that an orbit is looked for to another one, as a part of what lies between two.
-const ASIDE: f64 = 0.15;
 /// Half of the widths about a turn that are looked at, as parts of the step.
 const BESIDE: [f64; 3] = [1e-2, 1e-3, 1e-4];
 /// Orbits there are known to this part of how far they are from the turn: a step may be hardly longer than what Newton's method leaves.
@@ -67,12 +43,13 @@ impl Engine {
         self.doubted = parts.len() > 2;
         self.divide_parts(problem, newton, &mut parts);
         if let Some(earlier) = earlier {
+            let mut looks = Vec::new();
             for sought in sought_from(problem, &parts[0]) {
                 if sought.is_seen(problem, &parts, earlier) {
                     continue;
                 }
                 let points = [earlier, &parts[0], &parts[parts.len() - 1]];
-                match self.dip(problem, newton, points, None, sought) {
+                match self.dip(problem, newton, points, &mut looks, sought) {
                     Some(Dip::Last(found)) => insert(newton, &mut parts, found),
                     // Found as the last step, when it was that.
                     Some(Dip::Before(_)) if sought.is_among(&self.divided, after - 1) => {}
@@ -117,14 +94,16 @@ impl Engine {
         former: Former,
         parts: &mut Vec<Seen>,
     ) {
-        let way = former.way;
+        let mut looks = Vec::new();
+        let way = Some(former.way);
         let earlier = former.before(&parts[0]);
         for sought in of_multipliers(problem, &parts[0]) {
             if sought.is_seen(problem, parts, &earlier) {
                 continue;
             }
             let points = [&earlier, &parts[0], &parts[parts.len() - 1]];
-            if let Some(Dip::Last(found)) = self.dip(problem, newton, points, Some(way), sought) {
+            let found = self.dip_behind(problem, newton, points, way, &mut looks, sought);
+            if let Some(Dip::Last(found)) = found {
                 insert(newton, parts, found);
             }
         }
@@ -139,9 +118,10 @@ impl Engine {
     ) {
         let mut middle = 1;
         while middle + 1 < parts.len() {
+            let mut looks = Vec::new();
             for sought in sought_from(problem, &parts[middle]) {
                 let points = [middle - 1, middle, middle + 1].map(|place| &parts[place]);
-                let (found, place) = match self.dip(problem, newton, points, None, sought) {
+                let (found, place) = match self.dip(problem, newton, points, &mut looks, sought) {
                     Some(Dip::Last(found)) => (found, middle + 1),
                     Some(Dip::Before(found)) => (found, middle),
                     None => continue,
@@ -205,14 +185,26 @@ impl Engine {
         self.record_pair(problem, newton, &parts, after);
     }
 
-    /// An orbit inside one of two steps where a test function has the other sign than at all their ends. Where the first point has other
-    /// unknowns, the length of the `former` step is known and no orbit of it.
+    /// An orbit inside one of two steps where a test function has the other sign than at all their ends.
     fn dip(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         points: [&Seen; 3],
+        looks: &mut Vec<Look>,
+        sought: Sought,
+    ) -> Option<Dip> {
+        self.dip_behind(problem, newton, points, None, looks, sought)
+    }
+
+    /// The same; where the first point has other unknowns, the length of the `former` step is known and no orbit of it.
+    fn dip_behind(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        points: [&Seen; 3],
         former: Option<f64>,
+        looks: &mut Vec<Look>,
         sought: Sought,
     ) -> Option<Dip> {
         let values = points.map(|seen| sought.value(seen));
@@ -242,13 +234,14 @@ impl Engine {
                 from: places[first],
                 whole: lengths[first],
                 sought,
+                kinks: sought.may_have_kinks(problem),
                 sign,
                 reference,
             };
             if heights[first].min(heights[first + 1]) <= noise {
                 continue;
             }
-            if let Some(found) = self.lowest(problem, newton, &descent, &known) {
+            if let Some(found) = self.lowest(problem, newton, &descent, &known, looks) {
                 return Some(if first == 1 {
                     Dip::Last(found)
                 } else {
@@ -259,58 +252,84 @@ impl Engine {
         None
     }
 
-    /// An orbit of the other sign in a step, if (1) does not exclude it.
+    /// An orbit of the other sign in a step, if its heights do not exclude it. What is looked at is known to what is looked for next.
     fn lowest(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         descent: &Descent<'_>,
         known: &[Height; 3],
+        looks: &mut Vec<Look>,
     ) -> Option<Seen> {
-        let Descent {
-            between,
-            from,
-            whole,
-            ..
-        } = *descent;
-        let ends = step_between(between);
+        let Descent { from, whole, .. } = *descent;
         let mut known = known.to_vec();
-        // What falls steeply and is not of multipliers alone is that of a branch which bends, or which another one crosses: tangents tell little of
-        // which way it goes there.
-        let kinks = match descent.sought {
-            Sought::Test(Test::Slope) => false,
-            Sought::Test(Test::Watched(index)) => problem.is_of_multipliers(index),
-            Sought::Meeting(_) => true,
-        };
-        for _ in 0..LOOKS {
-            let place = in_doubt(&known, [from, from + whole], CLOSE * whole, kinks)?;
-            let options = self.options.newton;
-            let part = (place - from) / whole;
-            // What is only looked at leaves the walk as it is.
-            let contraction = newton.contraction();
-            let point = inside(problem.equations(), newton, ends, part, options);
-            newton.remember_contraction(contraction);
-            let point = point?;
-            if kinks && !is_on_way(newton, ends, &point) {
-                return None;
-            }
-            let seen = Seen::at(problem, &point, between[0].falls);
-            let mut pairs = seen.values.iter().zip(&between[0].values);
-            if pairs.any(|(here, there)| there.is_known() && !here.is_known()) {
-                // A part without a value would hide what changes its sign there.
-                return None;
-            }
-            let height = descent.sign * descent.sought.value(&seen).relative_to(descent.reference);
-            if height.is_nan() {
-                return None;
-            }
+        let mut found = None;
+        for look in looks.iter().filter(|look| look.on_way) {
+            let Some(height) = descent.height(look) else {
+                continue;
+            };
             if height < 0.0 {
-                return Some(seen);
+                if descent.is_within(look.place) {
+                    found = found.or(Some(look));
+                }
+                continue;
+            }
+            let place = look.place;
+            let near = |other: &Height| (other.place - place).abs() < CLOSE * whole;
+            if known.iter().any(near) {
+                continue;
+            }
+            let next = known.iter().position(|other| other.place > place);
+            known.insert(next.unwrap_or(known.len()), Height { place, height });
+        }
+        let close = CLOSE * whole;
+        if let Some(found) = found {
+            // What its own heights leave no doubt of may have other signs for its unknowns alone.
+            let is_open = in_doubt(&known, [from, from + whole], close, descent.kinks).is_some();
+            return is_open.then(|| found.seen.clone());
+        }
+        for _ in 0..LOOKS {
+            let place = in_doubt(&known, [from, from + whole], close, descent.kinks)?;
+            let look = self.look(problem, newton, descent, place)?;
+            let height = descent.height(&look);
+            looks.push(look.clone());
+            let height = height?;
+            if height < 0.0 {
+                return Some(look.seen);
             }
             let next = known.iter().position(|other| other.place > place)?;
             known.insert(next, Height { place, height });
         }
         None
+    }
+
+    /// The orbit at a place of a step, with its test functions.
+    fn look(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        descent: &Descent<'_>,
+        place: f64,
+    ) -> Option<Look> {
+        let ends = step_between(descent.between);
+        let part = (place - descent.from) / descent.whole;
+        // What is only looked at leaves the walk as it is.
+        let contraction = newton.contraction();
+        let point = inside(problem.equations(), newton, ends, part, self.options.newton);
+        newton.remember_contraction(contraction);
+        let point = point?;
+        let begin = descent.between[0];
+        let on_way = is_on_way(newton, ends, &point);
+        let seen = Seen::at(problem, &point, begin.falls);
+        let mut pairs = seen.values.iter().zip(&begin.values);
+        // A part without a value would hide what changes its sign there.
+        let is_whole = pairs.all(|(here, there)| here.is_known() || !there.is_known());
+        Some(Look {
+            place,
+            seen,
+            on_way,
+            is_whole,
+        })
     }
 
     /// Orbits before and behind the turn in a step in which the bordered determinant changes its sign too, if it does so beside the turn. `None` too where
@@ -432,6 +451,16 @@ impl Sought {
         }
     }
 
+    /// What falls steeply and is not of multipliers alone is that of a branch which bends, or which another one crosses: tangents tell little of
+    /// which way it goes there.
+    fn may_have_kinks(self, problem: &dyn BranchProblem) -> bool {
+        match self {
+            Self::Test(Test::Slope) => false,
+            Self::Test(Test::Watched(index)) => problem.is_of_multipliers(index),
+            Self::Meeting(_) => true,
+        }
+    }
+
     /// Whether the parts of a step show already what it would tell.
     fn is_seen(self, problem: &dyn BranchProblem, parts: &[Seen], earlier: &Seen) -> bool {
         match self {
@@ -484,11 +513,16 @@ enum Dip {
     Before(Seen),
 }
 
-/// How far a test function is above zero at a place along the branch.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Height {
-    pub(super) place: f64,
-    pub(super) height: f64,
+/// An orbit that was looked at within two steps.
+#[derive(Clone)]
+struct Look {
+    /// How far it is behind the first point.
+    place: f64,
+    seen: Seen,
+    /// Its tangent leads along the step.
+    on_way: bool,
+    /// All that is known where the step begins is known of it.
+    is_whole: bool,
 }
 
 /// A step in which a test function may come down to zero.
@@ -498,8 +532,23 @@ struct Descent<'s> {
     from: f64,
     whole: f64,
     sought: Sought,
+    kinks: bool,
     sign: f64,
     reference: f64,
+}
+
+impl Descent<'_> {
+    /// How far the function is above zero at an orbit; `None` where that tells nothing.
+    fn height(&self, look: &Look) -> Option<f64> {
+        let tells = look.is_whole && (look.on_way || !self.kinks);
+        let value = tells.then(|| self.sought.value(&look.seen))?;
+        let height = self.sign * value.relative_to(self.reference);
+        (!height.is_nan()).then_some(height)
+    }
+
+    fn is_within(&self, place: f64) -> bool {
+        place > self.from && place < self.from + self.whole
+    }
 }
 
 /// The step from one orbit to another.
@@ -537,161 +586,4 @@ fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
 /// How far a point is behind another one.
 pub(super) fn distance(newton: &Newton, a: &CurvePoint, b: &CurvePoint) -> f64 {
     ArcLength::from(newton, a).at(&b.u)
-}
-
-/// Where (1), or (2) if there may be kinks, comes down lowest in an interval, below zero, between known heights that are not too close.
-pub(super) fn in_doubt(
-    known: &[Height],
-    [from, to]: [f64; 2],
-    close: f64,
-    kinks: bool,
-) -> Option<f64> {
-    let differences: Vec<f64> = known.windows(3).map(second_difference).collect();
-    let mut deepest: Option<Height> = None;
-    for (i, pair) in known.windows(2).enumerate() {
-        let (a, b) = (pair[0], pair[1]);
-        if a.place < from || b.place > to || b.place - a.place < 2.0 * close {
-            continue;
-        }
-        let beside = [i.checked_sub(1), Some(i)];
-        let beside = beside.into_iter().flatten();
-        let differences = beside.filter_map(|index| differences.get(index));
-        let largest = differences.fold(0.0, |largest: f64, c| largest.max(c.abs()));
-        let lowest = [
-            Some(lowest_between(a, b, TRUSTED * largest)),
-            below_chords(known, i).filter(|_| kinks),
-        ];
-        for lowest in lowest.into_iter().flatten() {
-            let lower = |other: &Height| lowest.height < other.height;
-            if lowest.height < 0.0 && deepest.as_ref().is_none_or(lower) {
-                let aside = ASIDE * (b.place - a.place);
-                let place = lowest.place.clamp(a.place + aside, b.place - aside);
-                deepest = Some(Height { place, ..lowest });
-            }
-        }
-    }
-    deepest.map(|deepest| deepest.place)
-}
-
-/// Slope from one height to the next.
-fn chord(pair: &[Height]) -> f64 {
-    (pair[1].height - pair[0].height) / (pair[1].place - pair[0].place)
-}
-
-/// Second divided difference of three heights.
-fn second_difference(known: &[Height]) -> f64 {
-    (chord(&known[1..]) - chord(&known[..2])) / (known[2].place - known[0].place)
-}
-
-/// The lowest place of (2) between a height and the next one. Where one chord alone is known, that is half of the way that it is below zero.
-fn below_chords(known: &[Height], i: usize) -> Option<Height> {
-    let (a, b) = (known[i], known[i + 1]);
-    let l = b.place - a.place;
-    let before = i.checked_sub(1).map(|first| chord(&known[first..=i]));
-    let behind = known.get(i + 1..i + 3).map(chord);
-    let (s, height) = match (before, behind) {
-        (Some(m), Some(n)) => {
-            let own = (b.height - a.height) / l;
-            let steep = [m.min(own), n.max(own)];
-            let falls = steep[0] < 0.0 && steep[1] > 0.0;
-            let [m, n] = if falls {
-                steep.map(|slope| STEEPER * slope)
-            } else {
-                [m, n]
-            };
-            let s = (b.height - a.height - n * l) / (m - n);
-            (s, a.height + m * s)
-        }
-        (Some(m), None) => (0.5 * (l - a.height / m), 0.5 * (a.height + m * l)),
-        (None, Some(n)) => (0.5 * (l - b.height / n), 0.5 * (b.height - n * l)),
-        (None, None) => return None,
-    };
-    (s > 0.0 && s < l).then_some(Height {
-        place: a.place + s,
-        height,
-    })
-}
-
-/// The lowest place of (1) inside an interval; one of its ends if it falls or rises all along.
-fn lowest_between(a: Height, b: Height, c: f64) -> Height {
-    let l = b.place - a.place;
-    let (p, q) = (a.height, b.height);
-    let s = 0.5 * l - 0.5 * (q - p) / (c * l);
-    if s > 0.0 && s < l {
-        Height {
-            place: a.place + s,
-            height: p + (q - p) * s / l - c * s * (l - s),
-        }
-    } else if p < q {
-        a
-    } else {
-        b
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Where a function is found below zero between the last two of three points, or else the number of orbits that were looked at.
-    fn below(f: impl Fn(f64) -> f64, places: [f64; 3]) -> Result<f64, usize> {
-        below_between(f, places, [places[1], places[2]])
-    }
-
-    /// The same between any two of them.
-    fn below_between(
-        f: impl Fn(f64) -> f64,
-        places: [f64; 3],
-        step: [f64; 2],
-    ) -> Result<f64, usize> {
-        let at = |place: f64| Height {
-            place,
-            height: f(place),
-        };
-        let mut known: Vec<Height> = places.map(at).into();
-        for looks in 0..LOOKS {
-            let Some(place) = in_doubt(&known, step, CLOSE * (step[1] - step[0]), true) else {
-                return Err(looks);
-            };
-            if f(place) < 0.0 {
-                return Ok(place);
-            }
-            let next = known.iter().position(|other| other.place > place).unwrap();
-            known.insert(next, at(place));
-        }
-        Err(LOOKS)
-    }
-
-    /// Twice the period of a gear: the function falls steeply to a touch just before the last point, and rises from there. A second difference
-    /// of three points is less than a third of what there is at the touch.
-    #[test]
-    fn a_kink_hides_no_pair_of_zeros() {
-        let kink =
-            |s: f64| (1.15 - 1.6 * s).max(0.17 + 1.1 * (s - 1.0)) + 0.4 * (s * s - s).max(0.0);
-        let points = [-1.2, 0.0, 1.0];
-        let found = below(kink, points).unwrap();
-        assert!((0.7..0.9).contains(&found), "{found}");
-        assert!(below(|s| kink(s) + 0.4, points).is_err());
-    }
-
-    /// A pair of multipliers of four masses, whose modulus falls the faster the nearer it comes to a kink, where it is below one for a tenth of the step.
-    #[test]
-    fn a_kink_that_is_come_to_steeply_hides_no_pair_of_zeros() {
-        let kink = |s: f64| {
-            if s < 0.77 {
-                0.365 - 0.5 * (0.77_f64.sqrt() - (0.77 - s).sqrt())
-            } else {
-                -0.074 + 1.2 * (s - 0.77)
-            }
-        };
-        let points = [0.0, 1.0, 1.3];
-        let found = below_between(kink, points, [0.0, 1.0]).unwrap();
-        assert!((0.7..0.84).contains(&found), "{found}");
-    }
-
-    /// What halves from point to point leads to zero at the next one, and no further.
-    #[test]
-    fn what_decays_is_not_looked_at() {
-        assert_eq!(below(|s| (-0.6 * s).exp(), [0.0, 1.0, 2.0]), Err(0));
-    }
 }

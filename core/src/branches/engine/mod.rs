@@ -32,6 +32,7 @@ mod explained;
 mod grazing;
 mod grazing_search;
 mod grazing_within_step;
+mod heights;
 mod inside;
 mod joint;
 mod leap;

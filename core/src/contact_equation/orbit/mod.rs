@@ -2,6 +2,7 @@
 //! otherwise, as by a series, the gaps are seen from samples ([`gaps`]). Panels end where slopes of forces jump ([`kinks`]).
 
 mod content;
+pub(super) mod extents;
 pub(super) mod extremes;
 mod fast;
 mod forced;

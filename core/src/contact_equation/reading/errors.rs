@@ -13,6 +13,7 @@
 
 use nalgebra::Complex;
 
+use super::plain_outputs::{self, Plain};
 use crate::branches::moduli::{self, multipliers};
 use crate::branches::observed::{EXTREMES, Motion as Extent, Observed, part_of};
 use crate::branches::point::Point;
@@ -63,7 +64,10 @@ impl Run<'_> {
         here: Option<&[Complex<f64>]>,
     ) -> Option<Steepness> {
         let accuracy = self.accuracy();
-        let extremes = self.equations.extremes.coordinates.get()?.clone();
+        let extremes = match accuracy {
+            Accuracy::Output(_) => Vec::new(),
+            _ => self.equations.extremes.coordinates.get()?.clone(),
+        };
         let slope = at.tangent[at.tangent.len() - 1];
         let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
         let moved = at.u.iter().zip(&at.tangent);
@@ -83,7 +87,7 @@ impl Run<'_> {
         let apart = known.then(|| {
             if let Accuracy::Output(_) = accuracy {
                 let value = moved[moved.len() - 1];
-                self.changed(point, &self.outputs(&self.equations, value, false))
+                self.changed(point, self.asked_output(&self.equations, value))
             } else {
                 apart(&self.equations, &extremes, accuracy)
             }
@@ -104,8 +108,7 @@ impl Run<'_> {
         grown
             + match self.accuracy() {
                 Accuracy::Output(output) => {
-                    let others = self.outputs(&self.equations, point.value, true);
-                    let changed = self.changed(point, &others);
+                    let changed = self.rounded(point, output);
                     if self.equations.configurations.is_empty() {
                         return changed;
                     }
@@ -115,6 +118,25 @@ impl Run<'_> {
                 }
                 Accuracy::Coordinates | Accuracy::Coordinate(_) => 0.0,
             }
+    }
+
+    /// The output that the error is of, if it is a sum of coordinates.
+    pub(super) fn plain_output(&self, value: f64) -> Option<Plain> {
+        let Accuracy::Output(output) = self.accuracy() else {
+            return None;
+        };
+        let asked = &self.problem.asked;
+        let (parameters, omega) = (asked.parameters_at(value), asked.omega_at(value));
+        plain_outputs::one(asked.system.as_ref(), &parameters, omega, output)
+    }
+
+    /// What rounding of states does to an output: of a sum of coordinates at most, of others as it is seen.
+    fn rounded(&self, point: &Point, output: usize) -> f64 {
+        if let Some(plain) = self.plain_output(point.value) {
+            return EXTREMES * f64::EPSILON * plain.added(&point.observed.motions);
+        }
+        let others = self.outputs(&self.equations, point.value, true);
+        self.changed(point, others.get(output).copied())
     }
 
     /// What rounding of the states at the beginning of a period has come to at its end, relative to them, where motions of the linear part grow.
@@ -142,13 +164,24 @@ impl Run<'_> {
             .any(|error| SAFETY * error > self.problem.tolerance)
     }
 
-    /// How far the output that the error is of is from that among others.
-    fn changed(&self, point: &Point, others: &[Extent]) -> f64 {
+    /// What the output that the error is of does in an orbit by these equations.
+    fn asked_output(&self, equations: &Equations, value: f64) -> Option<Extent> {
+        let Accuracy::Output(output) = self.accuracy() else {
+            return None;
+        };
+        if let Some(plain) = self.plain_output(value) {
+            return Some(plain.motion(&Motion::of(equations)));
+        }
+        self.outputs(equations, value, false).get(output).copied()
+    }
+
+    /// How far the output that the error is of is from what it does in another orbit.
+    fn changed(&self, point: &Point, other: Option<Extent>) -> f64 {
         let Accuracy::Output(output) = self.accuracy() else {
             return f64::NAN;
         };
-        let pair = point.observed.outputs.get(output).zip(others.get(output));
-        pair.map_or(f64::NAN, |(own, there)| own.apart(there))
+        let pair = point.observed.outputs.get(output).zip(other);
+        pair.map_or(f64::NAN, |(own, there)| own.apart(&there))
     }
 
     /// What errors are measured by: what they are of, and the largest coordinate for one that is at rest.
@@ -187,7 +220,7 @@ impl Run<'_> {
     ) -> f64 {
         let accuracy = self.accuracy();
         if let Accuracy::Output(_) = accuracy {
-            return self.changed(point, &self.outputs(finer, value, false));
+            return self.changed(point, self.asked_output(finer, value));
         }
         let motions = self.equations.extremes.coordinates.get();
         apart(finer, motions.map_or(&[][..], |found| found), accuracy)
@@ -254,8 +287,8 @@ fn apart(finer: &Equations, extremes: &[[Place; 2]], accuracy: Accuracy) -> f64 
     apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
 }
 
-/// The largest difference of a coordinate between two motions.
-pub(super) fn everywhere(equations: [&Equations; 2]) -> f64 {
+/// The largest difference of a coordinate, or of an output, between two motions.
+pub(super) fn everywhere(equations: [&Equations; 2], output: Option<&Plain>) -> f64 {
     let motions = equations.map(Motion::of);
     let skeleton = &equations[0].skeleton;
     let coordinates = equations[0].values.linear.positions.nrows();
@@ -266,6 +299,10 @@ pub(super) fn everywhere(equations: [&Equations; 2]) -> f64 {
         for (motion, state) in motions.iter().zip(&mut states) {
             let (interval, phase) = motion.interval(phase);
             motion.state(interval, phase, state);
+        }
+        if let Some(output) = output {
+            most = most.max(output.apart(states.each_ref().map(|state| &state[..])));
+            continue;
         }
         let pairs = states[0].iter().zip(&states[1]).take(coordinates);
         most = pairs.fold(most, |most, (a, b)| most.max((a - b).abs()));

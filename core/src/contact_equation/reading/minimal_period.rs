@@ -8,10 +8,12 @@
 use std::convert::Infallible;
 use std::f64::consts::TAU;
 
+use crate::branches::observed::Motion as Extent;
 use crate::branches::recurrence::{
     CyclicSymmetry, Recurrence, SignedPermutation, are_near, least, may_be_earlier,
 };
 use crate::contact_equation::equations::Equations;
+use crate::contact_equation::orbit::extents;
 use crate::contact_equation::orbit::gaps::At;
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::problem::ContactProblem;
@@ -41,8 +43,8 @@ impl Compared {
     /// The states of the solution of the last pass, which may be smaller than those that its equations began with.
     pub(in crate::contact_equation) fn of(equations: &Equations, part: f64) -> Self {
         let motion = Motion::of(equations);
-        let extremes = motion.coordinate_extremes();
-        let ranges = extremes.iter().map(|[low, high]| high.value - low.value);
+        let extents = extents::sampled(&motion);
+        let ranges = extents.iter().map(Extent::peak_to_peak);
         let size = 0.5 * ranges.fold(0.0, f64::max);
         Self {
             begin: equations.skeleton.begin,

@@ -30,6 +30,8 @@ use self::errors::{Steepness, everywhere};
 use self::overlooked::Overlooked;
 use self::stretch::Read;
 use super::equations::Equations;
+use super::orbit::extents;
+use super::orbit::extremes::extremes_of;
 use super::orbit::motion::{Motion, Within};
 use super::run::Run;
 use super::run::error_estimate::{SAFETY, SCREENED, Screened};
@@ -42,6 +44,7 @@ use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::branches::stability::{Stability, Verdict};
 use crate::continuation::follow::CurvePoint;
+use crate::numeric::roots::Place;
 use crate::orbit::observe::Accuracy;
 use crate::shooting::signals::Rounded;
 
@@ -69,12 +72,6 @@ impl Run<'_> {
         let motion = Motion::of(equations);
         let coordinates = equations.values.linear.positions.nrows();
         let rate = equations.values.base;
-        let found = motion.coordinate_extremes().iter();
-        let motions = found.map(|[minimum, maximum]| Extent {
-            minimum: minimum.value,
-            maximum: maximum.value,
-            ..Extent::NONE
-        });
         let skeleton = &equations.skeleton;
         let recurrence = skeleton.recurrence();
         let switches = switches(equations);
@@ -95,10 +92,34 @@ impl Run<'_> {
             stability: Stability::unknown(),
             observed: Observed {
                 outputs: self.outputs_of(&motion, value, false),
-                ..Observed::extremes(motions.collect(), switches * recurrence.parts)
+                sampled: self.samples_coordinates(),
+                ..Observed::extremes(self.motions_of(&motion), switches * recurrence.parts)
             },
             error: None,
         }
+    }
+
+    /// Whether coordinates are known from a few phases: the error is of an output.
+    fn samples_coordinates(&self) -> bool {
+        matches!(self.accuracy(), Accuracy::Output(_))
+    }
+
+    /// What all coordinates do.
+    fn motions_of(&self, motion: &Motion<'_>) -> Vec<Extent> {
+        let of = |[minimum, maximum]: &[Place; 2]| Extent {
+            minimum: minimum.value,
+            maximum: maximum.value,
+            ..Extent::NONE
+        };
+        if !self.samples_coordinates() {
+            return motion.coordinate_extremes().iter().map(of).collect();
+        }
+        let mut motions = extents::sampled(motion);
+        let first = extremes_of(motion, 0..1);
+        for (motion, first) in motions.iter_mut().zip(&first) {
+            *motion = of(first);
+        }
+        motions
     }
 
     /// The outputs of the same, with more rounding of states if that is wanted.
@@ -109,13 +130,14 @@ impl Run<'_> {
     fn outputs_of(&self, motion: &Motion<'_>, value: f64, rounded: bool) -> Vec<Extent> {
         let problem = &self.problem.asked;
         let recurrence = motion.equations.skeleton.recurrence();
-        // Where an error is of an output, what rounding does to it is seen in states.
-        if !matches!(self.accuracy(), Accuracy::Output(_)) {
-            let (parameters, omega) = (problem.parameters_at(value), problem.omega_at(value));
-            let system = problem.system.as_ref();
-            if let Some(outputs) = plain_outputs::motions(motion, system, &parameters, omega) {
-                return outputs;
-            }
+        let (parameters, omega) = (problem.parameters_at(value), problem.omega_at(value));
+        let plain = plain_outputs::all(problem.system.as_ref(), &parameters, omega);
+        let plain = plain
+            .iter()
+            .map(|output| Some(output.as_ref()?.motion(motion)));
+        let plain: Vec<Option<Extent>> = plain.collect();
+        if let Some(outputs) = plain.iter().copied().collect() {
+            return outputs;
         }
         let Some(mut outputs) = problem.output_reader(value, recurrence) else {
             return Vec::new();
@@ -129,7 +151,8 @@ impl Run<'_> {
                 outputs.include(&within);
             }
         }
-        outputs.motions()
+        let pairs = plain.into_iter().zip(outputs.motions());
+        pairs.map(|(plain, read)| plain.unwrap_or(read)).collect()
     }
 
     /// Reads an orbit with everything that is asked for, its errors as a finer solution shows them: those at its value.
@@ -188,7 +211,8 @@ impl Run<'_> {
         }
         let apart = self.apart(&finer, &point, other[other.len() - 1]);
         let apart = apart.max(self.other_extremes(&finer));
-        let everywhere = everywhere([&self.equations, &finer]);
+        let output = self.plain_output(point.value);
+        let everywhere = everywhere([&self.equations, &finer], output.as_ref());
         self.finer = Some(finer);
         let moves = apart > 0.0 || self.accuracy().peak_to_peak(&point.observed) > 0.0;
         let noise = if moves { self.noise(&point) } else { 0.0 };
@@ -238,8 +262,11 @@ impl Run<'_> {
     /// Reads an orbit of the walk. Near one whose errors a finer solution has shown it has those, as many times as large as what its forces
     /// leave out tells. Where that is more than is asked for, and every so often, a finer solution is asked again.
     pub(super) fn read_on(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
-        // What a kink beside the end of a panel does to an orbit, the last coefficients of its forces do not tell.
-        if matches!(self.accuracy(), Accuracy::Output(_)) || self.equations.has_kinks() {
+        // What a kink beside the end of a panel does to an orbit, the last coefficients of its forces do not tell; nor what they do to an output
+        // that is no sum of coordinates.
+        let is_output = matches!(self.accuracy(), Accuracy::Output(_));
+        let is_foretold = !is_output || self.plain_output(at.parameter()).is_some();
+        if !is_foretold || self.equations.has_kinks() {
             return self.read(at);
         }
         let slope = at.parameter_slope().abs();

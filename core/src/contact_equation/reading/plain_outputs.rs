@@ -13,55 +13,70 @@ use crate::contact_equation::orbit::signal::Term;
 use crate::system::{Place, Signal, System, Wave};
 
 /// A sum of coordinates and a constant.
-struct Plain {
+pub(super) struct Plain {
     terms: Vec<Term>,
     constant: f64,
 }
 
-/// All outputs, if each is such a sum.
-fn plain(system: &dyn System, parameters: &[f64], omega: f64) -> Option<Vec<Plain>> {
+impl Plain {
+    /// What it adds up, by size, where all coordinates are as far as they come at once.
+    pub(super) fn added(&self, motions: &[Extent]) -> f64 {
+        let far = |term: &Term| term.factor.abs() * motions[term.coordinate].farthest();
+        self.terms.iter().map(far).sum::<f64>() + self.constant.abs()
+    }
+
+    /// How far it is in one state from what it is in another one.
+    pub(super) fn apart(&self, [a, b]: [&[f64]; 2]) -> f64 {
+        let terms = self.terms.iter();
+        let apart = terms.map(|term| term.factor * (a[term.coordinate] - b[term.coordinate]));
+        apart.sum::<f64>().abs()
+    }
+}
+
+/// One output, if it is such a sum.
+pub(super) fn one(
+    system: &dyn System,
+    parameters: &[f64],
+    omega: f64,
+    output: usize,
+) -> Option<Plain> {
+    let mut outputs = all(system, parameters, omega);
+    (output < outputs.len()).then(|| outputs.swap_remove(output))?
+}
+
+/// All outputs; nothing of one that is no such sum.
+pub(super) fn all(system: &dyn System, parameters: &[f64], omega: f64) -> Vec<Option<Plain>> {
     let facts = system.facts();
     let nothing = || Plain {
         terms: Vec::new(),
         constant: 0.0,
     };
-    let is_output = |place: &Place| matches!(place, Place::Output { .. });
-    let is_plain = |place: &Place| {
-        !matches!(place, Place::Output { of, wave, .. }
-            if *wave != Wave::CONSTANT || !matches!(of, Signal::Coordinate(_) | Signal::Constant))
-    };
-    if !facts.places.iter().all(is_plain) {
-        return None;
-    }
-    let mut found: Vec<Plain> = facts.outputs.iter().map(|_| nothing()).collect();
+    let mut found: Vec<_> = facts.outputs.iter().map(|_| Some(nothing())).collect();
     let mut coefficients = vec![0.0; facts.places.len()];
     system.coefficients(parameters, omega, &mut coefficients);
-    let pairs = facts.places.iter().zip(&coefficients);
-    for (place, &factor) in pairs.filter(|(place, _)| is_output(place)) {
-        let Place::Output { output, of, .. } = *place else {
+    for (place, &factor) in facts.places.iter().zip(&coefficients) {
+        let Place::Output { output, of, wave } = *place else {
+            continue;
+        };
+        let Some(sum) = &mut found[output] else {
             continue;
         };
         match of {
-            Signal::Coordinate(coordinate) => {
-                found[output].terms.push(Term { coordinate, factor });
+            Signal::Coordinate(coordinate) if wave == Wave::CONSTANT => {
+                sum.terms.push(Term { coordinate, factor });
             }
-            _ => found[output].constant += factor,
+            Signal::Constant if wave == Wave::CONSTANT => sum.constant += factor,
+            _ => found[output] = None,
         }
     }
-    Some(found)
+    found
 }
 
-/// What all outputs do over the period; nothing if one of them is more than a sum of coordinates.
-pub(super) fn motions(
-    motion: &Motion<'_>,
-    system: &dyn System,
-    parameters: &[f64],
-    omega: f64,
-) -> Option<Vec<Extent>> {
-    let outputs = plain(system, parameters, omega)?;
-    let sampled = motion.sampled();
-    let recurrence = motion.equations.skeleton.recurrence();
-    let found = outputs.iter().map(|output| {
+impl Plain {
+    /// What it does over the period.
+    pub(super) fn motion(&self, motion: &Motion<'_>) -> Extent {
+        let sampled = motion.sampled();
+        let recurrence = motion.equations.skeleton.recurrence();
         let mut whole = Extent {
             mean: Some(0.0),
             rms: Some(0.0),
@@ -69,8 +84,8 @@ pub(super) fn motions(
         };
         let mut sums = [0.0; 2];
         for part in 0..recurrence.parts {
-            let terms = image(&output.terms, &recurrence.image.power(part));
-            let found = read(motion, sampled, &terms, output.constant);
+            let terms = image(&self.terms, &recurrence.image.power(part));
+            let found = read(motion, sampled, &terms, self.constant);
             whole.include(found.least);
             whole.include(found.most);
             for (sum, own) in sums.iter_mut().zip(found.integrals) {
@@ -78,8 +93,7 @@ pub(super) fn motions(
             }
         }
         finish(whole, sums, recurrence)
-    });
-    Some(found.collect())
+    }
 }
 
 /// The terms of an output as they are where coordinates are in each other's place.

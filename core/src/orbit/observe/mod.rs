@@ -125,6 +125,7 @@ impl Observer {
             .collect();
         let outputs = self.outputs(balance, u);
         Observed {
+            sampled: false,
             motions,
             outputs,
             contacts,

@@ -22,6 +22,8 @@ pub(crate) enum Asked {
     Output(usize),
     /// A coordinate.
     Coordinate(usize),
+    /// All coordinates.
+    Coordinates,
     /// The law of a contact.
     Contact(usize),
     /// The laws of all contacts.
@@ -272,11 +274,13 @@ fn terms(system: &dyn System, coefficients: &[f64], asked: Asked) -> Vec<Vec<Ter
         });
         terms.collect()
     };
+    let coordinate = |index: usize| vec![Term::once(Signal::Coordinate(index))];
     let force = |contact: usize| vec![Term::once(Signal::Force(contact))];
     match asked {
         Asked::Outputs => (0..facts.outputs.len()).map(output).collect(),
         Asked::Output(index) => vec![output(index)],
-        Asked::Coordinate(index) => vec![vec![Term::once(Signal::Coordinate(index))]],
+        Asked::Coordinate(index) => vec![coordinate(index)],
+        Asked::Coordinates => (0..facts.coordinates.len()).map(coordinate).collect(),
         Asked::Contact(contact) => vec![force(contact)],
         Asked::Contacts => (0..facts.contacts.len()).map(force).collect(),
     }

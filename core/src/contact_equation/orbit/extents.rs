@@ -1,0 +1,26 @@
+//! About how far coordinates move, from a few phases of the period. Where no error is of coordinates, nothing but units of size and what completes
+//! an orbit depends on them: extremes of all modes of a structure, the fastest ones followed as they ring, would take most of the time of a point.
+
+use std::f64::consts::TAU;
+
+use super::motion::Motion;
+use crate::branches::observed::Motion as Extent;
+
+/// Phases in a period of the declaration.
+const PHASES: usize = 32;
+
+/// Smallest and largest values of all coordinates at these phases.
+pub(in crate::contact_equation) fn sampled(motion: &Motion<'_>) -> Vec<Extent> {
+    let skeleton = &motion.equations.skeleton;
+    let coordinates = motion.equations.values.linear.positions.nrows();
+    let mut extents = vec![Extent::NONE; coordinates];
+    let mut state = vec![0.0; 2 * coordinates];
+    for sample in 0..PHASES * skeleton.recurrence().period {
+        let phase = skeleton.begin + TAU * sample as f64 / PHASES as f64;
+        motion.at(phase, &mut state);
+        for (extent, x) in extents.iter_mut().zip(&state) {
+            extent.include(*x);
+        }
+    }
+    extents
+}
