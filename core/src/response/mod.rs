@@ -277,7 +277,8 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         /// the others as a part of the largest. An output that is a small difference of large coordinates, a rate or a force takes more
         /// harmonics, or nodes, than the coordinates do; by shooting the tolerance of the flow stays what it is, and the error is stated.
         /// What does not move has its largest value in place of peak-to-peak, or the largest coordinate where it is one; a force that is
-        /// zero and stays so has no error.
+        /// zero and stays so has no error. By the contact equation nothing depends on coordinates where it is of an output, so that all
+        /// but the first of them are known from a few phases until they are asked for ([`Observed::sampled`](crate::observe::Observed::sampled)).
         ///
         /// ```
         /// use hertzian::FrequencyResponse;
