@@ -38,7 +38,7 @@ impl PyObserved {
             pairs.try_for_each(|(name, motion)| dict.set_item(*name, PyMotion(*motion)))
         };
         let coordinates: Vec<&str> = model.coordinates.iter().map(String::as_str).collect();
-        motions(&by_name, &coordinates, &observed.motions)?;
+        motions(&by_name, &coordinates, observed.read())?;
         let outputs = PyDict::new(py);
         let names: Vec<&str> = model.outputs.iter().map(|o| o.name.as_str()).collect();
         motions(&outputs, &names, &observed.outputs)?;

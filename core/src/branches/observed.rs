@@ -25,8 +25,8 @@ pub struct Observed {
     /// One entry per coordinate.
     pub motions: Vec<Motion>,
     /// Whether all but the first of them are of 32 phases a period, as by the contact equation where
-    /// [accuracy](crate::FrequencyResponse::accuracy_of) is asked of an output: no error is of coordinates then.
-    /// [`Branch::complete`](crate::Branch::complete) reads them.
+    /// [accuracy](crate::FrequencyResponse::accuracy_of) is asked of an output: no error is of coordinates then. Tables and names leave them out
+    /// ([`read`](Self::read)), and [`Branch::complete`](crate::Branch::complete) reads them.
     #[cfg_attr(feature = "serde", serde(default))]
     pub sampled: bool,
     /// One entry per output of the system; none where only the extremes of the coordinates were read off. Between switches of contacts an
@@ -51,6 +51,12 @@ pub struct Observed {
 }
 
 impl Observed {
+    /// Motions of coordinates that were read off: of the first alone where the others are of a few [phases](Self::sampled).
+    pub fn read(&self) -> &[Motion] {
+        let known = if self.sampled { 1 } else { self.motions.len() };
+        &self.motions[..known.min(self.motions.len())]
+    }
+
     /// Extremes of the coordinates alone.
     pub(crate) fn extremes(motions: Vec<Motion>, switches: usize) -> Self {
         Self {

@@ -10,6 +10,7 @@ mod minimal_period;
 mod modes;
 mod moving_stiffness;
 mod order;
+mod outputs;
 mod ringing;
 mod several;
 mod symmetry;

@@ -119,7 +119,7 @@ pub(crate) fn of_series(
 fn read_off(observed: &Observed, source: Source, base: f64) -> Option<Motion> {
     match source {
         Source::Output(index) => observed.outputs.get(index).copied(),
-        Source::Coordinate(index) => observed.motions.get(index).copied(),
+        Source::Coordinate(index) => observed.read().get(index).copied(),
         Source::Contact(index) => observed.contacts.get(index).map(|contact| Motion {
             maximum: contact.maximum_force,
             minimum: contact.minimum_force,

@@ -187,7 +187,7 @@ impl Table {
         let [outputs, coordinates] = self.named;
         let motion = |motions: &[Motion], index: usize| motions.get(index).copied();
         let outputs = (0..outputs).map(|index| motion(&observed.outputs, index));
-        let coordinates = (0..coordinates).map(|index| motion(&observed.motions, index));
+        let coordinates = (0..coordinates).map(|index| motion(observed.read(), index));
         let mut cells: Vec<String> = outputs
             .chain(coordinates)
             .flat_map(|motion| {

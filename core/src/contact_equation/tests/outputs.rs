@@ -1,0 +1,80 @@
+//! What is read where the error is of an output: that output as if it were of coordinates, these from a few phases until they are completed.
+
+use crate::branches::observed::Motion;
+use crate::{Branch, ContactEquation, FrequencyResponse, Shooting};
+
+crate::oscillator! {
+    /// Two masses, of which the second meets a ball; one output is a sum, the other the force.
+    Measured(x, y) {
+        law ball(g) { g > 0 => 30*g^1.5, else => 0 }
+        ddot(x) + 0.05*dot(x) + x + 0.3*(x - y) = 0.2*cos(omega*t);
+        ddot(y) + 0.04*dot(y) + 9*y - 0.3*(x - y) + ball(y - 0.05) = 0;
+        output tip = x - 2*y + 0.25;
+        output force = force(ball);
+    }
+}
+
+fn branch(accuracy: Option<&str>) -> Branch {
+    let request = FrequencyResponse::of(&Measured {}).by(ContactEquation::new());
+    let request = request.from(1.0).to(1.2).tolerance(1e-8);
+    let request = match accuracy {
+        Some(name) => request.accuracy_of(name),
+        None => request,
+    };
+    request.run().unwrap()
+}
+
+fn near(a: &Motion, b: &Motion, part: f64) -> bool {
+    (a.maximum - b.maximum).abs() + (a.minimum - b.minimum).abs() <= part * b.peak_to_peak()
+}
+
+#[test]
+fn coordinates_are_completed_where_the_error_is_of_an_output() {
+    let whole = branch(None);
+    assert!(whole.points.iter().all(|point| !point.observed.sampled));
+    for name in ["tip", "force"] {
+        let branch = branch(Some(name));
+        for point in branch.points.iter().step_by(5) {
+            let observed = &point.observed;
+            assert!(observed.sampled);
+            assert_eq!((observed.motions.len(), observed.read().len()), (2, 1));
+            let completed = branch.complete(point).unwrap().observed;
+            assert!(!completed.sampled);
+            assert!(near(&completed.motions[0], &observed.motions[0], 1e-7));
+            // 32 phases are within two per cent of a motion that is nearly a wave.
+            assert!(near(&observed.motions[1], &completed.motions[1], 0.05));
+            let exact = FrequencyResponse::of(&Measured {}).by(Shooting::new());
+            let exact = exact.tolerance(1e-11).near_orbit(&point.orbit);
+            let exact = exact.orbit(point.value).unwrap();
+            assert!(near(
+                &completed.motions[1],
+                &exact.observed.motions[1],
+                1e-7
+            ));
+        }
+    }
+}
+
+/// The error that is stated of a sum of coordinates covers the true one, and is as small as is asked for.
+#[test]
+fn stated_errors_of_sums_hold() {
+    let branch = branch(Some("tip"));
+    for point in &branch.points {
+        let exact = FrequencyResponse::of(&Measured {}).by(Shooting::new());
+        let exact = exact
+            .tolerance(1e-12)
+            .near_orbit(&point.orbit)
+            .accuracy_of("tip");
+        let exact = exact.orbit(point.value).unwrap();
+        let exact = exact.observed.outputs[0];
+        let own = point.observed.outputs[0];
+        let apart = (own.peak_to_peak() - exact.peak_to_peak()).abs() / exact.peak_to_peak();
+        let stated = point.error.unwrap();
+        assert!(
+            apart <= stated + 1e-12,
+            "{}: {apart:e} {stated:e}",
+            point.value
+        );
+        assert!(stated <= 1e-8, "{}: {stated:e}", point.value);
+    }
+}
