@@ -244,7 +244,34 @@ impl Run<'_> {
         apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
     }
 
-    /// The same, since the last point.
+    /// The largest difference of a coordinate, or of the output that the error is of if it is a sum of these, from a finer motion.
+    pub(super) fn everywhere(&self, finer: &Equations, value: f64) -> f64 {
+        let output = self.plain_output(value);
+        let motions = [&self.equations, finer].map(Motion::of);
+        let skeleton = &self.equations.skeleton;
+        let coordinates = self.equations.values.linear.positions.nrows();
+        let mut states = [vec![0.0; 2 * coordinates], vec![0.0; 2 * coordinates]];
+        let mut most = 0.0_f64;
+        for sample in 0..COMPARED {
+            let phase = skeleton.begin + skeleton.length * (sample as f64 / COMPARED as f64);
+            for (motion, state) in motions.iter().zip(&mut states) {
+                let (interval, phase) = motion.interval(phase);
+                motion.state(interval, phase, state);
+            }
+            let [a, b] = states.each_ref().map(|state| &state[..coordinates]);
+            if let Some(output) = &output {
+                most = most.max(output.apart([a, b]));
+                continue;
+            }
+            most = a
+                .iter()
+                .zip(b)
+                .fold(most, |most, (a, b)| most.max((a - b).abs()));
+        }
+        most
+    }
+
+    /// How peak-to-peak changes with what is varied since the last point.
     pub(in crate::contact_equation) fn rise(&self, point: &Point) -> f64 {
         self.record.points.last().map_or(0.0, |last| {
             let by = (point.value - last.value).abs();
@@ -285,27 +312,4 @@ fn apart(finer: &Equations, extremes: &[[Place; 2]], accuracy: Accuracy) -> f64 
     let pairs = pairs.filter(|(index, _)| counts(*index));
     let apart = pairs.map(|(coordinate, [low, high])| off(coordinate, high) - off(coordinate, low));
     apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
-}
-
-/// The largest difference of a coordinate, or of an output, between two motions.
-pub(super) fn everywhere(equations: [&Equations; 2], output: Option<&Plain>) -> f64 {
-    let motions = equations.map(Motion::of);
-    let skeleton = &equations[0].skeleton;
-    let coordinates = equations[0].values.linear.positions.nrows();
-    let mut states = [vec![0.0; 2 * coordinates], vec![0.0; 2 * coordinates]];
-    let mut most = 0.0_f64;
-    for sample in 0..COMPARED {
-        let phase = skeleton.begin + skeleton.length * (sample as f64 / COMPARED as f64);
-        for (motion, state) in motions.iter().zip(&mut states) {
-            let (interval, phase) = motion.interval(phase);
-            motion.state(interval, phase, state);
-        }
-        if let Some(output) = output {
-            most = most.max(output.apart(states.each_ref().map(|state| &state[..])));
-            continue;
-        }
-        let pairs = states[0].iter().zip(&states[1]).take(coordinates);
-        most = pairs.fold(most, |most, (a, b)| most.max((a - b).abs()));
-    }
-    most
 }

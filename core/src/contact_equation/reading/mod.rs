@@ -26,7 +26,7 @@ mod stretch;
 
 use nalgebra::{Complex, DMatrix};
 
-use self::errors::{Steepness, everywhere};
+use self::errors::Steepness;
 use self::overlooked::Overlooked;
 use self::stretch::Read;
 use super::equations::Equations;
@@ -211,8 +211,7 @@ impl Run<'_> {
         }
         let apart = self.apart(&finer, &point, other[other.len() - 1]);
         let apart = apart.max(self.other_extremes(&finer));
-        let output = self.plain_output(point.value);
-        let everywhere = everywhere([&self.equations, &finer], output.as_ref());
+        let everywhere = self.everywhere(&finer, point.value);
         self.finer = Some(finer);
         let moves = apart > 0.0 || self.accuracy().peak_to_peak(&point.observed) > 0.0;
         let noise = if moves { self.noise(&point) } else { 0.0 };
@@ -234,8 +233,7 @@ impl Run<'_> {
         }
         if self.is_vertical(&point, &steepness, size) {
             let own = part_of(SAFETY * apart + noise, size);
-            let of_multipliers = (point.stability.error - SAFETY * moved).max(0.0);
-            self.own_errors = Some([own, of_multipliers]);
+            self.own_errors = Some([own, point.stability.error - SAFETY * moved]);
         }
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
