@@ -24,7 +24,7 @@ pub(crate) fn part_of(error: f64, measure: f64) -> f64 {
 pub struct Observed {
     /// One entry per coordinate.
     pub motions: Vec<Motion>,
-    /// Whether all but the first of them are of 32 phases a period, as by the contact equation where
+    /// Whether all but the first of them are of 48 phases a period, as by the contact equation where
     /// [accuracy](crate::FrequencyResponse::accuracy_of) is asked of an output: no error is of coordinates then. Tables and names leave them out
     /// ([`read`](Self::read)), and [`Branch::complete`](crate::Branch::complete) reads them.
     #[cfg_attr(feature = "serde", serde(default))]

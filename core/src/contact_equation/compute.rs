@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-use super::branch::method::{ContactBranch, REFUSALS};
+use super::branch::method::{ContactBranch, REFUSALS, RELOCATED};
 use super::branch::resume_state::Rest;
 use super::equations::Equations;
 use super::equations::setting::Frame;
@@ -111,6 +111,7 @@ pub(super) fn orbit_near(
 /// If it is lost where nodes overlook something.
 fn read(mut run: Run<'_>, mut u: Vec<f64>, value: f64) -> Result<Point, Error> {
     let mut found = None;
+    let mut relocated = 0;
     loop {
         let newton = Newton::new(&run.equations);
         let at = CurvePoint {
@@ -121,6 +122,14 @@ fn read(mut run: Run<'_>, mut u: Vec<f64>, value: f64) -> Result<Point, Error> {
         let Some(read) = run.read(&at) else {
             return found.ok_or_else(|| lost(value).into());
         };
+        if (read.overlooks.is_some() || run.excess(&read.point) > 1.0)
+            && relocated < RELOCATED
+            && let Some(there) = at_moved_kinks(&mut run, &at.u)
+        {
+            relocated += 1;
+            u = there;
+            continue;
+        }
         let wanted = if let Some(overlooked) = read.overlooks {
             // Nodes that step over a narrow place of a law have not seen the orbit.
             overlooked.needed
@@ -282,9 +291,6 @@ fn ended(
     Ok(Followed { branch, rest })
 }
 
-/// Kinks of a first orbit are located so often at most.
-const RELOCATED: usize = 3;
-
 /// A run whose equations fit a first orbit, and its unknowns.
 fn begun<'p>(
     problem: &'p ContactProblem,
@@ -445,27 +451,32 @@ fn fitting(problem: &ContactProblem, first: First) -> Option<(Run<'_>, Vec<f64>)
 /// A first orbit with panels that end at its kinks: those of the guess are elsewhere.
 fn at_kinks(mut run: Run<'_>, mut u: Vec<f64>) -> (Run<'_>, Vec<f64>) {
     for _ in 0..RELOCATED {
-        if !run.has_moved_kinks() {
-            break;
-        }
-        let Some(mut equations) = run.equations.at_kinks(&u) else {
+        let Some(there) = at_moved_kinks(&mut run, &u) else {
             break;
         };
-        let mut there = run.equations.rearranged(&equations, &u);
-        let mut newton = Newton::new(&equations);
-        if solve::at_value(&mut equations, &mut newton, &mut there, AT_START).is_err() {
-            break;
-        }
-        let former = std::mem::replace(&mut run.equations, equations);
-        run.equations.compute(&there, false);
-        if run.equations.failed || run.fits(&there) == Fits::No {
-            run.equations = former;
-            run.equations.compute(&u, false);
-            break;
-        }
         u = there;
     }
     (run, u)
+}
+
+/// An orbit solved for again with panels that end at its kinks, if they end elsewhere; the equations are those of the last pass where it is not found.
+fn at_moved_kinks(run: &mut Run<'_>, u: &[f64]) -> Option<Vec<f64>> {
+    if !run.has_moved_kinks() {
+        return None;
+    }
+    let mut equations = run.equations.at_kinks(u)?;
+    let mut there = run.equations.rearranged(&equations, u);
+    let mut newton = Newton::new(&equations);
+    solve::at_value(&mut equations, &mut newton, &mut there, AT_START).ok()?;
+    let former = std::mem::replace(&mut run.equations, equations);
+    run.equations.compute(&there, false);
+    if run.equations.failed || run.fits(&there) == Fits::No {
+        run.equations = former;
+        run.equations.compute(u, false);
+        return None;
+    }
+    run.clear_finer();
+    Some(there)
 }
 
 /// A solution near an orbit that is given by its series. What comes back earlier is followed until then only.

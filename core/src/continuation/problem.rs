@@ -191,6 +191,13 @@ impl Norm {
         form[n] = vector[n] / (scale.parameter * scale.parameter);
     }
 
+    /// The scale at an orbit of its own size alone, if it has one.
+    pub fn size_at(&self, u: &[f64], parameter: f64) -> Option<Scale> {
+        let size = self.products(u, u).into_iter().sum::<f64>();
+        let is_known = size > 0.0 && size.is_finite();
+        is_known.then(|| self.scale_at(u, parameter, &mut [0.0; 2]))
+    }
+
     /// The scale at an orbit: the size of its oscillation and of its mean, neither below a hundredth of the largest so far,
     /// which is kept in `largest`. A branch that passes through rest is then not followed in ever smaller steps.
     pub fn scale_at(&self, u: &[f64], parameter: f64, largest: &mut [f64; 2]) -> Scale {

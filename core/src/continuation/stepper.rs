@@ -150,7 +150,15 @@ impl Stepper {
     fn point(&mut self, problem: &mut dyn Problem, newton: &mut Newton) -> CurvePoint {
         let mut tangent = vec![0.0; self.trial.len()];
         newton.tangent(problem, &self.trial, &mut tangent, false);
-        let scale = self.scale_at_trial(newton);
+        let mut scale = self.scale_at_trial(newton);
+        if self.largest == [0.0; 2] {
+            // What rests at zero has no size: that of the way it goes over the range of the parameter is one.
+            let way = scale.parameter / tangent[tangent.len() - 1].abs();
+            let moved: Vec<f64> = tangent.iter().map(|t| way * t).collect();
+            let floor = ROUNDINGS * newton.rounding_size();
+            let of_way = newton.norm().size_at(&moved, scale.parameter);
+            scale = of_way.filter(|of| of.oscillation > floor).unwrap_or(scale);
+        }
         let norm = newton.norm().length(scale, &tangent);
         for t in &mut tangent {
             *t /= norm;

@@ -100,6 +100,13 @@ impl<'a> Fixed<'a> {
             value: self.value,
         };
         let mut scale = self.newton.norm().scale_at(u, parameter, &mut [0.0; 2]);
+        if u[..last].iter().all(|x| *x == 0.0) {
+            // What rests at zero has no size: the linear response has one.
+            let response = self
+                .newton
+                .linear_response(&mut self.balance, u, border, scale);
+            scale = response.unwrap_or(scale);
+        }
         let mut done = Ok(());
         for _ in 0..SCALES {
             done = self

@@ -11,7 +11,8 @@
 //! one with odd waves of its directions and even ones of its offset (`s = t = 1`). Two stops on both sides are images of each other.
 //!
 //! Whether two laws are related so is known where they are one law, with equal arguments. Others are compared by their values:
-//! a piece is analytic, so that two that agree to rounding at many gaps and rates, near their ends and far away, are one.
+//! a piece is analytic, so that two that agree to rounding at many gaps and rates, near their ends, far away, and where either
+//! changes within a small distance, are one.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -19,6 +20,8 @@ use std::f64::consts::TAU;
 use super::ROUNDING;
 use crate::branches::recurrence::SignedPermutation;
 use crate::law::{Derivatives, On};
+use crate::laws::generic::narrow::Narrow;
+use crate::laws::generic::scales::Scales;
 use crate::model::layout::{ContactLayout, Layout, Term};
 use crate::system::{Part, System};
 
@@ -30,6 +33,8 @@ const DISTANCES: [f64; 11] = [
 ];
 /// Where a piece with two ends is looked at, in parts of it.
 const PARTS: [f64; 7] = [1e-6, 1e-3, 0.04, 0.23, 0.5, 0.81, 0.999];
+/// Where a narrow place is looked at, in widths from it.
+const WIDTHS: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
 /// Rates at which laws are compared.
 const RATES: [f64; 6] = [0.0, 0.013, -0.37, 1.7, -7.1, 230.0];
 /// The signs `s` and `t`.
@@ -259,8 +264,13 @@ impl Contact {
         if of.len() != count || !to.iter().enumerate().all(near) {
             return false;
         }
+        let unit = if unit > 0.0 { unit } else { 1.0 };
+        let own = self.narrow(system, &of, unit).map(|gap| s * gap);
+        let narrow: Vec<f64> = own.chain(other.narrow(system, &to, unit)).collect();
         (0..=count).all(|piece| {
-            let gaps = gaps(&to, piece, if unit > 0.0 { unit } else { 1.0 });
+            let mut gaps = gaps(&to, piece, unit);
+            let below = |gap: &f64| to.iter().filter(|level| *gap > **level).count();
+            gaps.extend(narrow.iter().filter(|gap| below(gap) == piece));
             let [there, here] = [(other, 1.0, piece), (self, s, turned(piece, count))]
                 .map(|(contact, sign, piece)| contact.sampled(system, piece, &gaps, sign));
             let equal = |((x, size), (y, other)): (&(f64, f64), &(f64, f64))| {
@@ -269,6 +279,26 @@ impl Contact {
             };
             there.iter().zip(&here).all(equal)
         })
+    }
+
+    /// Gaps in and beside narrow places of the law.
+    fn narrow(
+        &self,
+        system: &dyn System,
+        levels: &[f64],
+        unit: f64,
+    ) -> impl Iterator<Item = f64> + use<> {
+        let mut found = Vec::new();
+        if let Some(mut scales) = Scales::of(system.law(self.law)) {
+            scales.set(&self.arguments, levels);
+            if scales.may_be_narrow() {
+                for distance in DISTANCES {
+                    scales.narrow([-distance * unit, distance * unit], &mut found);
+                }
+            }
+        }
+        let beside = |place: Narrow| WIDTHS.map(|widths| place.at + widths * place.width);
+        found.into_iter().flat_map(beside)
     }
 
     /// Forces on one piece at the gaps, times a sign, and all rates, each with the size of its terms.

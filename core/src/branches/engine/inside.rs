@@ -262,6 +262,8 @@ impl Engine {
         looks: &mut Vec<Look>,
     ) -> Option<Seen> {
         let Descent { from, whole, .. } = *descent;
+        let close = CLOSE * whole;
+        let is_open = in_doubt(known, [from, from + whole], close, descent.kinks).is_some();
         let mut known = known.to_vec();
         let mut found = None;
         for look in looks.iter().filter(|look| look.on_way) {
@@ -282,10 +284,8 @@ impl Engine {
             let next = known.iter().position(|other| other.place > place);
             known.insert(next.unwrap_or(known.len()), Height { place, height });
         }
-        let close = CLOSE * whole;
         if let Some(found) = found {
-            // What its own heights leave no doubt of may have other signs for its unknowns alone.
-            let is_open = in_doubt(&known, [from, from + whole], close, descent.kinks).is_some();
+            // What its own heights leave no doubt of may have another sign for its unknowns alone.
             return is_open.then(|| found.seen.clone());
         }
         for _ in 0..LOOKS {

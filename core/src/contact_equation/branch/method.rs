@@ -35,6 +35,8 @@ pub(super) const VANISHED: f64 = 1e-14;
 pub(super) const VANISHING: f64 = 1e-9;
 /// A point is refused so often at most.
 pub(in crate::contact_equation) const REFUSALS: usize = 8;
+/// As many of them may be for panels that do not end at the kinks of the orbit: they move again as it is solved for.
+pub(in crate::contact_equation) const RELOCATED: usize = 6;
 /// A step is made again shorter so often at most, where it leaps over a touch of a level where the force jumps, over a touch and a change of
 /// the order of switches, or to where no equations are found.
 pub(super) const SHORTENED: usize = 8;
@@ -329,6 +331,17 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         }
     }
 
+    /// Of nodes that step over a narrow place: where panels end elsewhere no orbit was found, or one that asks for others. The step was too
+    /// long for them.
+    fn shorter_or_lost(&mut self) -> Read {
+        if self.shortened >= SHORTENED {
+            return Read::Lost;
+        }
+        self.shortened += 1;
+        self.refused = 0;
+        Read::TooFar
+    }
+
     /// What is done with an orbit that was read, by equations that fit it.
     fn decide(&mut self, at: &CurvePoint, read: ReadOrbit, fits: Fits, stuck: bool) -> Read {
         let wanted = match read.overlooks {
@@ -338,8 +351,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let coarse = wanted > self.run.resolution;
         let again = !stuck && self.refused < REFUSALS;
         // As many nodes may do where panels end at the kinks of this orbit.
-        let fails = read.overlooks.is_none() && self.run.excess(&read.point) > 1.0;
-        let moved = fails && again && self.refused == 0 && self.run.has_moved_kinks();
+        let fails = self.run.excess(&read.point) > 1.0;
+        let tried = self.refused >= RELOCATED;
+        let moved = fails && again && !tried && self.run.has_moved_kinks();
         if moved && self.prepare_at_kinks(&at.u) {
             self.refused += 1;
             return Read::Refused;
@@ -352,7 +366,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             return Read::Refused;
         }
         if read.overlooks.is_some() {
-            return Read::Lost;
+            return self.shorter_or_lost();
         }
         self.refused = 0;
         self.shortened = 0;

@@ -1,11 +1,12 @@
 //! What is the same for all orbits of a branch: the system, what is varied, and what unknowns count from.
 
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use crate::cancel::Cancel;
 use crate::contact_equation::linear_part::configuration::Configuration;
 use crate::contact_equation::linear_part::moving_stiffness::as_contacts;
-use crate::contact_equation::linear_part::values::Values;
+use crate::contact_equation::linear_part::values::{Contact, Values};
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::placement::Resolution;
 use crate::laws::generic::scales::Scales;
@@ -27,8 +28,10 @@ pub(in crate::contact_equation) struct Setting {
     pub(in crate::contact_equation) cancel: Cancel,
     /// Nothing but the time depends on the frequency that is varied.
     pub(in crate::contact_equation) plain: bool,
-    /// Operands of the laws that have pieces with kinks.
-    kinked: Arc<[Option<Scales>]>,
+    /// Operands of the laws whose functions may be sharp, and, per contact, whether its law may have narrow places, where nothing that its arguments
+    /// depend on is varied.
+    scales: Arc<[Option<Scales>]>,
+    narrow: Arc<OnceLock<Vec<bool>>>,
     /// The system at one frequency, if so.
     known: Arc<OnceLock<Option<Values>>>,
 }
@@ -52,13 +55,10 @@ impl Setting {
         };
         // One may be flat at this frequency alone.
         let same = OTHERS.iter().all(|part| at(part * omega) == at(omega));
-        let kinked = (0..system.facts().laws).map(|law| {
-            let law = system.law(law);
-            let pieces = law.facts().pieces.len();
-            Scales::of(law).filter(|scales| (0..pieces).any(|piece| scales.bends(piece)))
-        });
+        let scales = (0..system.facts().laws).map(|law| Scales::of(system.law(law)));
         Self {
-            kinked: kinked.collect(),
+            scales: scales.collect(),
+            narrow: Arc::default(),
             system,
             layout: Arc::new(layout),
             variable,
@@ -70,15 +70,45 @@ impl Setting {
         }
     }
 
-    /// Whether forces have kinks on pieces.
-    pub(in crate::contact_equation) fn has_kinks(&self) -> bool {
-        self.kinked.iter().any(Option::is_some)
+    /// Whether panels may have to end between switches: where slopes of forces jump on pieces, or turn sharply.
+    pub(in crate::contact_equation) fn may_have_ends(&self, values: &Values) -> bool {
+        let mut known = self.scales.iter().flatten();
+        known.any(Scales::bends_anywhere) || self.are_narrow(values).iter().any(|is| *is)
     }
 
     /// The operands of a law whose force has kinks on a piece.
     pub(in crate::contact_equation) fn kinked(&self, law: usize, piece: usize) -> Option<Scales> {
-        let scales = self.kinked.get(law)?.as_ref();
+        let scales = self.scales.get(law)?.as_ref();
         scales.filter(|scales| scales.bends(piece)).cloned()
+    }
+
+    /// The operands of the law of a contact that may have narrow places.
+    pub(in crate::contact_equation) fn sharp(
+        &self,
+        values: &Values,
+        contact: usize,
+    ) -> Option<Scales> {
+        let is_narrow = self.are_narrow(values).get(contact) == Some(&true);
+        let law = values.contacts.get(contact).filter(|_| is_narrow)?.law;
+        self.scales.get(law)?.clone()
+    }
+
+    fn are_narrow(&self, values: &Values) -> Cow<'_, [bool]> {
+        let found = || -> Vec<bool> {
+            let is_narrow = |contact: &Contact| {
+                let scales = self.scales.get(contact.law).and_then(Option::as_ref);
+                scales.cloned().is_some_and(|mut scales| {
+                    scales.set(&contact.arguments, &contact.levels);
+                    scales.may_be_narrow()
+                })
+            };
+            values.contacts.iter().map(is_narrow).collect()
+        };
+        if self.plain {
+            Cow::Borrowed(self.narrow.get_or_init(found))
+        } else {
+            Cow::Owned(found())
+        }
     }
 
     /// Parameters and frequency where what is varied has a value.

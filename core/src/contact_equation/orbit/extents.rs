@@ -6,8 +6,10 @@ use std::f64::consts::TAU;
 use super::motion::Motion;
 use crate::branches::observed::Motion as Extent;
 
-/// Phases in a period of the declaration.
-const PHASES: usize = 32;
+/// Phases in a period of the declaration, each a part of the whole period after the last one that no harmonic or number of parts has in common with them:
+/// the golden section.
+const PHASES: usize = 48;
+const PART: f64 = 0.618_033_988_749_894_8;
 
 /// Smallest and largest values of all coordinates at these phases.
 pub(in crate::contact_equation) fn sampled(motion: &Motion<'_>) -> Vec<Extent> {
@@ -15,8 +17,10 @@ pub(in crate::contact_equation) fn sampled(motion: &Motion<'_>) -> Vec<Extent> {
     let coordinates = motion.equations.values.linear.positions.nrows();
     let mut extents = vec![Extent::NONE; coordinates];
     let mut state = vec![0.0; 2 * coordinates];
-    for sample in 0..PHASES * skeleton.recurrence().period {
-        let phase = skeleton.begin + TAU * sample as f64 / PHASES as f64;
+    let period = skeleton.recurrence().period;
+    for sample in 0..PHASES * period {
+        let part = (PART * sample as f64).fract();
+        let phase = skeleton.begin + TAU * period as f64 * part;
         motion.at(phase, &mut state);
         for (extent, x) in extents.iter_mut().zip(&state) {
             extent.include(*x);

@@ -1,4 +1,5 @@
-//! Where the slope of a force jumps although its gap stays on a piece, as that of `max(0, dot(gap))` does where the rate is zero.
+//! Where the slope of a force jumps although its gap stays on a piece, as that of `max(0, dot(gap))` does where the rate is zero, and where
+//! it turns sharply, as that of `tanh(dot(gap)/w)` does there.
 //!
 //! Polynomials through nodes on both sides of such a kink converge slowly, and neither the orbit nor its multipliers tell by how much. So
 //! panels end there. Since the force is continuous, an orbit depends on the place `p` of such an end as little as
@@ -11,8 +12,21 @@
 //! ([`scales`](crate::laws::generic::scales)), and stay in their part of the way between two switches until they have moved far. Finer
 //! equations, which tell the error, have them where the orbit has them. Two kinks between the same samples are not seen.
 //!
+//! A place that is sharp has a width `w` on the way ([`narrow`](crate::laws::generic::narrow)), and the force is analytic, with singularities
+//! about as far from the place. Panels that grow with the distance from it,
+//!
+//! ```text
+//! p - 4^j 2 w,    p + 4^j 2 w,    j = 0, 1, ..                                                                 (2)
+//! ```
+//!
+//! are followed by polynomials of one degree equally well: each is no longer than three times its distance from the singularities. Nothing
+//! depends on (2) but the error, so that ends stay until the place has moved by a part of them. Where it has moved farther, nodes are apart
+//! by a part of that, and so is the place that the orbit by them has from where it should be: ends that are located anew, again and again,
+//! close in on it.
+//!
 //! Source: Gear and Østerby (1984), Solving ordinary differential equations with discontinuities, ACM Transactions on Mathematical Software
-//! 10, 23 (steps end where a derivative jumps).
+//! 10, 23 (steps end where a derivative jumps); Trefethen (2013), Approximation Theory and Approximation Practice, chapter 8 (convergence by
+//! the distance of singularities).
 
 use std::f64::consts::TAU;
 
@@ -23,7 +37,8 @@ use crate::contact_equation::equations::setting::Setting;
 use crate::contact_equation::linear_part::values::Contact;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::interval::{Cut, Interval, Mark};
-use crate::contact_equation::skeleton::placement::{EDGE, Kink, MOST};
+use crate::contact_equation::skeleton::placement::{APART, EDGE, Kink, MOST};
+use crate::laws::generic::narrow::{Narrow, Way};
 use crate::laws::generic::scales::Scales;
 use crate::numeric::roots::{Place, root};
 
@@ -32,10 +47,19 @@ const SAMPLES: f64 = 200.0;
 const LEAST: f64 = 24.0;
 /// Accuracy of its part of the way: by (1) far more than enough.
 const CLOSE: f64 = 1e-10;
-/// Samples from one kink to the next, at least on the mean.
+/// Kinks of a way where slopes jump, at most, and samples from one to the next, at least on the mean.
+const KINKS: usize = 32;
 const FAR: usize = 6;
 /// Operands smaller than this part of their largest value on a way are rounding.
 const NOISE: f64 = 1e-9;
+/// How wide places are at most where a law turns sharply, in parts of the way, and how many of them.
+const NARROW: f64 = 0.02;
+const PLACES: usize = 12;
+/// Panels end so many widths from such a place, and farther by this factor, up to this part of the way, by (2); it may move by a part of that.
+const WIDTHS: f64 = 2.0;
+const FARTHER: f64 = 4.0;
+const FARTHEST: f64 = 0.25;
+const FREE: f64 = 0.25;
 
 impl Equations {
     /// The same with more nodes, at an orbit: panels end at its kinks.
@@ -81,7 +105,7 @@ impl Equations {
         if self.failed {
             return None;
         }
-        if !self.setting.has_kinks() {
+        if !self.setting.may_have_ends(&self.values) {
             return Some(&[]);
         }
         let found = self.kinks.get_or_init(|| {
@@ -99,7 +123,10 @@ impl Equations {
     /// Whether kinks of the last pass are farther from where panels end than this part of a way.
     pub(in crate::contact_equation) fn has_moved_kinks(&self, most: f64) -> bool {
         let ends = &self.skeleton.placement.kinks;
-        let same = |(a, b): (&Kink, &Kink)| a.after == b.after && (a.part - b.part).abs() <= most;
+        let same = |(a, b): (&Kink, &Kink)| {
+            let most = if b.free > 0.0 { b.free } else { most };
+            a.after == b.after && (a.part - b.part).abs() <= most
+        };
         let are_there =
             |kinks: &[Kink]| ends.len() == kinks.len() && ends.iter().zip(kinks).all(same);
         self.kinks().is_some_and(|kinks| !are_there(kinks))
@@ -114,7 +141,7 @@ pub(in crate::contact_equation) fn kinks(
     u: &[f64],
 ) -> Vec<Kink> {
     let mut found = Vec::new();
-    if !setting.has_kinks() {
+    if !setting.may_have_ends(gaps.values) {
         return found;
     }
     for after in 0..=skeleton.switches.len() {
@@ -132,25 +159,137 @@ pub(in crate::contact_equation) fn kinks(
         if end <= begin {
             continue;
         }
+        let between = Between {
+            setting,
+            gaps,
+            interval,
+            phases: [begin, end],
+            whole: [from, to] == [Cut::Begin, Cut::End],
+        };
+        let bends = between.bends();
+        let sharp = between.sharp();
+        found.extend(between.ends(after, &bends, &sharp));
+    }
+    found
+}
+
+/// The way between two cuts.
+struct Between<'b> {
+    setting: &'b Setting,
+    gaps: &'b Gaps<'b>,
+    interval: &'b Interval,
+    phases: [f64; 2],
+    /// The orbit comes back where it ends.
+    whole: bool,
+}
+
+impl Between<'_> {
+    /// Gap and rate of a contact at a part of the way.
+    fn gap(&self, contact: usize, part: f64) -> [f64; 2] {
+        let [begin, end] = self.phases;
+        self.gaps.gap(contact, begin + part * (end - begin))
+    }
+
+    /// Number of samples.
+    fn samples(&self) -> usize {
+        let [begin, end] = self.phases;
+        (SAMPLES * (end - begin) / TAU).max(LEAST) as usize
+    }
+
+    /// Parts of the way where slopes jump, in their order.
+    fn bends(&self) -> Vec<f64> {
         let mut parts = Vec::new();
-        let samples = (SAMPLES * (end - begin) / TAU).max(LEAST) as usize;
-        for active in &interval.active {
-            let contact = &gaps.values.contacts[active.contact];
-            let Some(scales) = setting.kinked(contact.law, active.piece) else {
+        let samples = self.samples();
+        for active in &self.interval.active {
+            let contact = &self.gaps.values.contacts[active.contact];
+            let Some(scales) = self.setting.kinked(contact.law, active.piece) else {
                 continue;
             };
-            let gap = |part: f64| gaps.gap(active.contact, begin + part * (end - begin));
+            let gap = |part: f64| self.gap(active.contact, part);
             add(scales, contact, active.piece, samples, gap, &mut parts);
         }
         parts.sort_by(f64::total_cmp);
         parts.dedup_by(|next, kept| *next - *kept < EDGE);
         // So many are the rounding of an operand that rests, which changes its sign from one sample to the next.
-        if parts.len() > MOST.min(samples / FAR) {
-            continue;
+        if parts.len() > KINKS.min(samples / FAR) {
+            parts.clear();
         }
-        found.extend(parts.into_iter().map(|part| Kink { after, part }));
+        parts
     }
-    found
+
+    /// Where forces turn sharply.
+    fn sharp(&self) -> Vec<Narrow> {
+        let mut found = Vec::new();
+        for active in &self.interval.active {
+            let Some(mut scales) = self.setting.sharp(self.gaps.values, active.contact) else {
+                continue;
+            };
+            let contact = &self.gaps.values.contacts[active.contact];
+            scales.set(&contact.arguments, &contact.levels);
+            let at = |part: f64| {
+                let part = if self.whole {
+                    part
+                } else {
+                    part.clamp(0.0, 1.0)
+                };
+                let [gap, rate] = self.gap(active.contact, part);
+                [contact.held(active.piece, gap), rate]
+            };
+            let way = Way {
+                at: &at,
+                range: [EDGE, 1.0 - EDGE],
+                parts: self.samples(),
+                widest: NARROW,
+            };
+            let mut own = Vec::new();
+            scales.narrow_along(active.piece, way, &mut own);
+            // So many of one contact are the rounding of an operand that rests.
+            if own.len() <= PLACES {
+                found.append(&mut own);
+            }
+        }
+        found
+    }
+
+    /// Where panels end then: by (2) as far as no other place is nearer.
+    fn ends(&self, after: usize, bends: &[f64], sharp: &[Narrow]) -> Vec<Kink> {
+        let kink = |part: f64, free: f64| Kink { after, part, free };
+        let mut ends: Vec<Kink> = bends.iter().map(|part| kink(*part, 0.0)).collect();
+        let apart = |a: f64, b: f64| {
+            let apart = (a - b).abs();
+            if self.whole {
+                apart.min(1.0 - apart)
+            } else {
+                apart
+            }
+        };
+        for place in sharp {
+            let first = WIDTHS * place.width;
+            let reaches = std::iter::successors(Some(first), |reach| Some(FARTHER * reach));
+            for reach in reaches.take_while(|reach| *reach < FARTHEST) {
+                for part in [place.at - reach, place.at + reach] {
+                    let part = if self.whole {
+                        part.rem_euclid(1.0)
+                    } else {
+                        part
+                    };
+                    let others = sharp.iter().map(|other| other.at);
+                    let mut others = others.chain(bends.iter().copied());
+                    let nearest = others.all(|other| apart(other, part) >= (1.0 - CLOSE) * reach);
+                    if nearest && (EDGE..=1.0 - EDGE).contains(&part) {
+                        ends.push(kink(part, FREE * reach));
+                    }
+                }
+            }
+        }
+        ends.sort_by(|a, b| a.part.total_cmp(&b.part));
+        ends.dedup_by(|next, kept| next.part - kept.part < APART);
+        if ends.len() > MOST {
+            // Kinks come first.
+            ends.retain(|end| end.free == 0.0);
+        }
+        ends
+    }
 }
 
 /// Adds the parts of a way where an operand of a contact changes its sign.

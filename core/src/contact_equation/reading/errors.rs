@@ -21,7 +21,6 @@ use crate::contact_equation::equations::Equations;
 use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::orbit::extremes::extremes_of;
 use crate::contact_equation::orbit::motion::Motion;
-use crate::contact_equation::run::error_estimate::SAFETY;
 use crate::contact_equation::run::{DIFFERENCE, MULTIPLIERS, Run};
 use crate::continuation::follow::CurvePoint;
 use crate::numeric::roots::Place;
@@ -31,6 +30,10 @@ use crate::orbit::observe::Accuracy;
 const LARGEST: f64 = 300.0;
 /// Roundings of states at the beginning, of which finer equations have as many.
 const GROWN: f64 = 100.0;
+/// Where rounding of what is varied moves an orbit by this part of its size, the branch is vertical.
+const VERTICAL: f64 = 1e-3;
+/// Coordinates come farther than a few phases tell, by less than this factor.
+const BEYOND: f64 = 2.0;
 /// Roundings of an output in a configuration.
 const ROUNDINGS: f64 = 8.0;
 /// Phases at which two motions are compared.
@@ -130,10 +133,10 @@ impl Run<'_> {
         plain_outputs::one(asked.system.as_ref(), &parameters, omega, output)
     }
 
-    /// What rounding of states does to an output: of a sum of coordinates at most, of others as it is seen.
+    /// What rounding of states does to an output: of a sum of coordinates where all add up, of others as it is seen.
     fn rounded(&self, point: &Point, output: usize) -> f64 {
         if let Some(plain) = self.plain_output(point.value) {
-            return EXTREMES * f64::EPSILON * plain.added(&point.observed.motions);
+            return BEYOND * EXTREMES * f64::EPSILON * plain.added(&point.observed.motions);
         }
         let others = self.outputs(&self.equations, point.value, true);
         self.changed(point, others.get(output).copied())
@@ -148,7 +151,7 @@ impl Run<'_> {
         GROWN * f64::EPSILON * (growth * time).min(LARGEST).exp_m1()
     }
 
-    /// Whether the branch is so steep that rounding of what is varied alone makes errors at its value larger than is asked for.
+    /// Whether the branch is so steep that rounding of what is varied alone makes another orbit of it, whose value tells nothing.
     pub(in crate::contact_equation) fn is_vertical(
         &self,
         point: &Point,
@@ -159,9 +162,8 @@ impl Run<'_> {
         let multipliers = point.stability.multipliers.iter().map(|m| m.norm());
         let largest = multipliers.fold(1.0, f64::max);
         let errors = [part_of(along, size), moved / (MULTIPLIERS * largest)];
-        errors
-            .into_iter()
-            .any(|error| SAFETY * error > self.problem.tolerance)
+        let known = errors.iter().all(|error| error.is_finite());
+        known && errors.iter().any(|error| *error > VERTICAL)
     }
 
     /// What the output that the error is of does in an orbit by these equations.
@@ -244,29 +246,34 @@ impl Run<'_> {
         apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
     }
 
-    /// The largest difference of a coordinate, or of the output that the error is of if it is a sum of these, from a finer motion.
-    pub(super) fn everywhere(&self, finer: &Equations, value: f64) -> f64 {
+    /// The largest difference of a coordinate from a finer motion, and that of the output that the error is of, if it is a sum of coordinates: in that
+    /// an error of a gap is not seen. Both are at least what the error is of where it is of theirs.
+    pub(super) fn everywhere(&self, finer: &Equations, value: f64, apart: f64) -> [f64; 2] {
         let output = self.plain_output(value);
         let motions = [&self.equations, finer].map(Motion::of);
         let skeleton = &self.equations.skeleton;
         let coordinates = self.equations.values.linear.positions.nrows();
         let mut states = [vec![0.0; 2 * coordinates], vec![0.0; 2 * coordinates]];
-        let mut most = 0.0_f64;
-        for sample in 0..COMPARED {
+        // An output has no image: it is of other coordinates in the next part.
+        let parts = if output.is_some() {
+            skeleton.recurrence().parts
+        } else {
+            1
+        };
+        let of_output = matches!(self.accuracy(), Accuracy::Output(_));
+        let mut most = [if of_output { 0.0 } else { apart }, apart];
+        for sample in 0..COMPARED * parts {
             let phase = skeleton.begin + skeleton.length * (sample as f64 / COMPARED as f64);
             for (motion, state) in motions.iter().zip(&mut states) {
-                let (interval, phase) = motion.interval(phase);
-                motion.state(interval, phase, state);
+                motion.at(phase, state);
             }
             let [a, b] = states.each_ref().map(|state| &state[..coordinates]);
-            if let Some(output) = &output {
-                most = most.max(output.apart([a, b]));
-                continue;
-            }
-            most = a
-                .iter()
-                .zip(b)
-                .fold(most, |most, (a, b)| most.max((a - b).abs()));
+            let own = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+            most[0] = own.fold(most[0], f64::max);
+            most[1] = match &output {
+                Some(output) => most[1].max(output.apart([a, b])),
+                None => most[1].max(most[0]),
+            };
         }
         most
     }

@@ -211,7 +211,7 @@ impl Run<'_> {
         }
         let apart = self.apart(&finer, &point, other[other.len() - 1]);
         let apart = apart.max(self.other_extremes(&finer));
-        let everywhere = self.everywhere(&finer, point.value);
+        let [everywhere, of_asked] = self.everywhere(&finer, point.value, apart);
         self.finer = Some(finer);
         let moves = apart > 0.0 || self.accuracy().peak_to_peak(&point.observed) > 0.0;
         let noise = if moves { self.noise(&point) } else { 0.0 };
@@ -240,10 +240,11 @@ impl Run<'_> {
             stiffness,
             switches: switches(&self.equations),
             narrowest: self.narrowest(&at.u),
-            apart: everywhere.max(apart),
+            apart: everywhere,
+            of_asked,
             shift: shift.abs(),
             slope: at.parameter_slope().abs(),
-            error: error.max(part_of(SAFETY * everywhere, size)),
+            error: error.max(part_of(SAFETY * of_asked, size)),
             spread: SAFETY * spread,
             most: [1.0, 1.0],
             left: SCREENED,
@@ -279,7 +280,8 @@ impl Run<'_> {
         }
         let narrowest = self.narrowest(&at.u);
         let rise = self.rise(&point);
-        let size = self.size(&point, 0.0);
+        let noise = if is_output { self.noise(&point) } else { 0.0 };
+        let size = self.size(&point, noise);
         let same = |known: &&mut Screened| known.switches == switches(&self.equations);
         let known = self.screened.as_mut().filter(same);
         let grown = known.and_then(|known| {
@@ -290,7 +292,7 @@ impl Run<'_> {
             return self.read_further(at, point, map);
         };
         known.left -= 1;
-        let error = part_of(SAFETY * (known.apart + rise * known.shift), size);
+        let error = part_of(SAFETY * (known.of_asked + rise * known.shift) + noise, size);
         let error = grown * error.max(known.error);
         let spread = spreading * known.spread;
         if error.is_nan() || error > self.problem.tolerance {

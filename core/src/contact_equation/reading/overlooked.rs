@@ -1,11 +1,12 @@
 //! Whether nodes step over a narrow place of a law.
 //!
-//! A finer solution tells the error only if its nodes see what those of the orbit do not. A bump of the force that a gap passes between two nodes
-//! of both leaves no trace in either. Where a law has such places, and how narrow they are, its data tell: see
-//! [narrow](crate::laws::generic::narrow). With gaps `g_i` at successive nodes, one at `g` with the width `w` is seen if
+//! A finer solution tells the error only if its nodes see what those of the orbit do not. A bump of the force that a motion passes between two
+//! nodes of both leaves no trace in either, and a slope that is steep between two nodes is seen by none. Where a law has such places along a
+//! motion, gaps and rates, and how narrow they are, its data tell: see [narrow](crate::laws::generic::narrow). With nodes at parts `p_i` of a
+//! panel, a place at `p` with the width `w` is seen if
 //!
 //! ```text
-//! g_i <= g <= g_(i + 1)    only where    g_(i + 1) - g_i <= 2 w                                                (1)
+//! p_i <= p <= p_(i + 1)    only where    p_(i + 1) - p_i <= 2 w                                                (1)
 //! ```
 //!
 //! Source: Shannon (1949), Communication in the presence of noise (what samples that are too far apart do not tell).
@@ -13,11 +14,13 @@
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::problem::RESOLUTIONS;
 use crate::contact_equation::run::Run;
-use crate::laws::generic::narrow::Narrow;
-use crate::laws::generic::scales::Scales;
+use crate::laws::generic::narrow::{Narrow, Samples, Way};
+use crate::laws::generic::scales::{Scales, Sight};
 
 /// Widths that nodes may be apart, by (1).
 const SEEN: f64 = 2.0;
+/// Parts of a panel that are looked at.
+const PARTS: usize = 64;
 
 /// Nodes step over a narrow place of a law.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +33,8 @@ pub(in crate::contact_equation) struct Overlooked {
 pub(in crate::contact_equation) struct Sharp {
     scales: Scales,
     places: Vec<Narrow>,
+    /// A panel at its ends and nodes.
+    nodes: Samples,
 }
 
 impl Sharp {
@@ -38,21 +43,38 @@ impl Sharp {
         Self {
             scales,
             places: Vec::new(),
+            nodes: Samples::default(),
         }
     }
 
-    /// Those in the range of some gaps.
-    fn places(&mut self, [arguments, levels]: [&[f64]; 2], gaps: &[f64]) -> &[Narrow] {
-        let low = gaps.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = gaps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        self.places.clear();
-        self.scales.set(arguments, levels);
-        // How wide a place is depends on where it is looked for: on this orbit alone.
-        let range = [low, high];
-        if self.scales.may_be_narrow() {
-            self.scales.narrow(range, &mut self.places);
+    /// How far the nodes of a panel are apart about a narrow place, in widths, at most.
+    fn widest(&mut self, piece: usize, at: &dyn Fn(f64) -> [f64; 2]) -> f64 {
+        let Samples {
+            places: nodes,
+            gaps,
+            rates,
+        } = &self.nodes;
+        if self.scales.look(piece, gaps, rates, 1.0) < Sight::Missed {
+            return 0.0;
         }
-        &self.places
+        let apart = nodes.windows(2).map(|pair| pair[1] - pair[0]);
+        let way = Way {
+            at,
+            range: [0.0, 1.0],
+            parts: PARTS,
+            widest: apart.fold(0.0, f64::max),
+        };
+        self.places.clear();
+        self.scales.narrow_along(piece, way, &mut self.places);
+        let mut widest = 0.0_f64;
+        for pair in nodes.windows(2) {
+            let places = self.places.iter();
+            let between = places.filter(|place| pair[0] <= place.at && place.at <= pair[1]);
+            widest = between.fold(widest, |most, place| {
+                most.max((pair[1] - pair[0]) / place.width)
+            });
+        }
+        widest
     }
 }
 
@@ -78,29 +100,34 @@ impl Run<'_> {
         if sharp.iter().all(Option::is_none) {
             return widest;
         }
+        let values = &self.equations.values;
         let motion = Motion::of(&self.equations);
-        let mut gaps = Vec::new();
         for (index, interval) in self.equations.skeleton.intervals.iter().enumerate() {
             let [from, to] = motion.phases(index);
             for active in interval.active.iter().filter(|_| to > from) {
+                let contact = &values.contacts[active.contact];
                 let Some(sharp) = &mut sharp[active.contact] else {
                     continue;
                 };
-                let of = &self.equations.values.contacts[active.contact];
-                gaps.clear();
-                gaps.extend((0..interval.nodes.count()).map(|node| {
-                    let (phase, states) = motion.at_node(index, node);
-                    motion.gap_of(active.contact, phase, states)[0]
-                }));
-                let places = sharp.places([&of.arguments, &of.levels], &gaps);
-                for pair in gaps.windows(2) {
-                    let (low, high) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
-                    let between = places
-                        .iter()
-                        .filter(|place| low <= place.at && place.at <= high);
-                    widest =
-                        between.fold(widest, |most, place| most.max((high - low) / place.width));
+                sharp.scales.set(&contact.arguments, &contact.levels);
+                if !sharp.scales.may_be_narrow() {
+                    continue;
                 }
+                let held =
+                    |[gap, slope]: [f64; 2]| [contact.held(active.piece, gap), slope * values.base];
+                let at = |part: f64| {
+                    let part = part.clamp(0.0, 1.0);
+                    held(motion.gap(active.contact, index, from + part * (to - from)))
+                };
+                sharp.nodes.clear();
+                sharp.nodes.push(0.0, at(0.0));
+                for node in 0..interval.nodes.count() {
+                    let (phase, states) = motion.at_node(index, node);
+                    let there = held(motion.gap_of(active.contact, phase, states));
+                    sharp.nodes.push(interval.nodes.targets[node], there);
+                }
+                sharp.nodes.push(1.0, at(1.0));
+                widest = widest.max(sharp.widest(active.piece, &at));
             }
         }
         widest

@@ -28,6 +28,12 @@ pub(in crate::contact_equation) struct Screened {
     /// its error changes sign.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(in crate::contact_equation) apart: f64,
+    /// The same of the output that the error is of.
+    #[cfg_attr(
+        feature = "serde",
+        serde(default = "unknown", with = "crate::serialise")
+    )]
+    pub(in crate::contact_equation) of_asked: f64,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(in crate::contact_equation) shift: f64,
     /// How what is varied changes along the branch.
@@ -43,6 +49,12 @@ pub(in crate::contact_equation) struct Screened {
     pub(in crate::contact_equation) most: [f64; 2],
     /// As many orbits may still be compared with it.
     pub(in crate::contact_equation) left: usize,
+}
+
+/// What a walk that was kept before does not say: a finer solution is asked.
+#[cfg(feature = "serde")]
+fn unknown() -> f64 {
+    f64::NAN
 }
 
 impl Screened {

@@ -64,12 +64,13 @@ pub(in crate::contact_equation) struct Placed {
     pub(in crate::contact_equation) phase: f64,
 }
 
-/// Nearer to a switch, or to another one, than this part of the way there is no kink.
+/// Nearer to a switch than this part of the way there is no kink, nor nearer than the other to another one.
 pub(in crate::contact_equation) const EDGE: f64 = 1e-6;
-/// Kinks of a way, at most.
-pub(in crate::contact_equation) const MOST: usize = 32;
+pub(in crate::contact_equation) const APART: f64 = 1e-9;
+/// Kinks of a way, at most, with those about narrow places.
+pub(in crate::contact_equation) const MOST: usize = 256;
 
-/// Where the slope of a force jumps between two cuts.
+/// Where the slope of a force jumps between two cuts, or where panels end about a place where it turns sharply.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::contact_equation) struct Kink {
@@ -78,6 +79,9 @@ pub(in crate::contact_equation) struct Kink {
     /// Part of the way from the last of these, or the beginning, to the next one, or the end.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(in crate::contact_equation) part: f64,
+    /// How far from there panels may end as well; zero where the slope jumps.
+    #[cfg_attr(feature = "serde", serde(default, with = "crate::serialise"))]
+    pub(in crate::contact_equation) free: f64,
 }
 
 /// Nodes of a stretch and panels of a stretch.
@@ -142,9 +146,10 @@ impl Placement {
         let told = |index: usize| self.is_told(index);
         let places = self.kinks.iter().map(|kink| (kink.after, kink.part));
         let between = |kink: &Kink| {
-            kink.after <= self.placed.len() && kink.part >= EDGE && kink.part <= 1.0 - EDGE
+            let inside = kink.part >= EDGE && kink.part <= 1.0 - EDGE;
+            kink.after <= self.placed.len() && inside && (0.0..=1.0).contains(&kink.free)
         };
-        let apart = |a: &Kink, b: &Kink| a.after != b.after || b.part - a.part >= EDGE;
+        let apart = |a: &Kink, b: &Kink| a.after != b.after || b.part - a.part >= APART;
         on_pieces
             && (0.0..=length).contains(phase)
             && self.placed.iter().all(has_level)

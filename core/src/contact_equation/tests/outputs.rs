@@ -41,7 +41,7 @@ fn coordinates_are_completed_where_the_error_is_of_an_output() {
             let completed = branch.complete(point).unwrap().observed;
             assert!(!completed.sampled);
             assert!(near(&completed.motions[0], &observed.motions[0], 1e-7));
-            // 32 phases are within two per cent of a motion that is nearly a wave.
+            // 48 phases are within two per cent of a motion that is nearly a wave.
             assert!(near(&observed.motions[1], &completed.motions[1], 0.05));
             let exact = FrequencyResponse::of(&Measured {}).by(Shooting::new());
             let exact = exact.tolerance(1e-11).near_orbit(&point.orbit);

@@ -220,6 +220,23 @@ impl Newton {
         })
     }
 
+    /// The scale of where the first update leads, in place of one that unknowns without a size do not tell; `None` where there is none, or
+    /// it leads nowhere.
+    pub fn linear_response(
+        &mut self,
+        problem: &mut dyn Problem,
+        u: &[f64],
+        border: Border<'_>,
+        scale: Scale,
+    ) -> Option<Scale> {
+        self.scale = scale;
+        self.norm.write_units(scale, &mut self.units);
+        self.look(problem, u, border, true, true).ok()?;
+        self.trial.copy_from_slice(u);
+        subtract(&mut self.trial, &self.update, 1.0);
+        self.norm.size_at(&self.trial, scale.parameter)
+    }
+
     /// Evaluates the equations, with a new matrix or without, and writes the update that they ask for; returns its size.
     fn look(
         &mut self,

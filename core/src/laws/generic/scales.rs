@@ -114,7 +114,7 @@ impl Scales {
     }
 
     /// How many pieces there are, how many operands a piece has, what is done with one of them, whether it is sharp for
-    /// the arguments at hand, and its values at gaps at rest: of a base their size.
+    /// the arguments at hand, and its values at gaps and rates: of a base their size.
     pub(super) fn pieces(&self) -> usize {
         self.pieces.len()
     }
@@ -131,8 +131,14 @@ impl Scales {
         self.pieces[piece].sharp[feature]
     }
 
-    pub(super) fn operand(&mut self, piece: usize, feature: usize, gap: &[f64]) -> Vec<f64> {
-        self.run(piece, gap, &vec![0.0; gap.len()]);
+    pub(super) fn operand(
+        &mut self,
+        piece: usize,
+        feature: usize,
+        gap: &[f64],
+        rate: &[f64],
+    ) -> Vec<f64> {
+        self.run(piece, gap, rate);
         self.divide(piece, gap);
         let values = self.values[feature * gap.len()..][..gap.len()].iter();
         let of_base = self.kind(piece, feature) == Kind::Base;
@@ -142,6 +148,11 @@ impl Scales {
     /// Whether the slope of the force jumps on a piece, where an operand changes its sign.
     pub(crate) fn bends(&self, piece: usize) -> bool {
         self.pieces[piece].kinds.contains(&Kind::Bends)
+    }
+
+    /// Whether it does so on any.
+    pub(crate) fn bends_anywhere(&self) -> bool {
+        (0..self.pieces()).any(|piece| self.bends(piece))
     }
 
     /// Values of these operands along a motion, one after the other.

@@ -4,7 +4,9 @@ use std::f64::consts::TAU;
 
 use hertzian::time::stroboscope::Stroboscope;
 use hertzian::time::{self, Tangent};
-use hertzian::{ContactEquation, FrequencyResponse, Shooting, Stop, System};
+use hertzian::{
+    Branch, ContactEquation, FrequencyResponse, HarmonicBalance, Shooting, Stop, System,
+};
 use hertzian_tests::random::Random;
 
 hertzian::oscillator! {
@@ -456,4 +458,52 @@ fn motions_that_cannot_begin_at_rest_begin_beside_it() {
     let [a, b] = [&by_balance, &settled].map(hertzian::Point::peak_to_peak);
     assert!((a / b - 1.0).abs() < by_balance.error.unwrap(), "{a} {b}");
     assert_eq!(by_balance.stability.verdict, settled.stability.verdict);
+}
+
+hertzian::oscillator! {
+    /// A mass that meets a stop, below its resonance, in any units of length and time: there are three orbits.
+    Meeting(x) {
+        param size > 0;
+        param rate > 0;
+        law stop(gap) { gap > 0 => 17.387*rate^2*size*(gap/size)^1.5, else => 0 }
+        ddot(x) + 0.02214*rate*dot(x) + rate^2*x - stop(-x - size) = 2.3313*rate^2*size*cos(omega*t);
+    }
+}
+
+/// At rest in its middle a system has no size, in whatever units. The first orbit, and all that follow, are the same in all of them, as
+/// nearly as two orbits are known.
+#[test]
+fn branches_are_the_same_in_any_units() {
+    let branches = |request: &dyn Fn(&dyn System, [f64; 2]) -> Branch| {
+        UNITS.map(|(size, rate)| {
+            let branch = request(&Meeting { size, rate }, [0.412 * rate, 0.493 * rate]);
+            let points = branch.points.iter();
+            let points = points.map(|point| [point.value / rate, point.peak_to_peak() / size]);
+            (branch.stopped, points.collect::<Vec<_>>())
+        })
+    };
+    let by_all: [&dyn Fn(&dyn System, [f64; 2]) -> Branch; 3] = [
+        &|system, [from, to]| {
+            let request = FrequencyResponse::of(system).from(from).to(to);
+            request.by(HarmonicBalance::new()).run().unwrap()
+        },
+        &|system, [from, to]| {
+            let request = FrequencyResponse::of(system).from(from).to(to);
+            request.by(Shooting::new()).run().unwrap()
+        },
+        &|system, [from, to]| {
+            let request = FrequencyResponse::of(system).from(from).to(to);
+            request.by(ContactEquation::new()).run().unwrap()
+        },
+    ];
+    for request in by_all {
+        let [(stopped, points), others @ ..] = branches(request);
+        for (_, other) in &others {
+            assert_eq!(points.len(), other.len(), "{stopped}");
+            for (a, b) in points.iter().zip(other) {
+                let apart = [0, 1].map(|i| (a[i] / b[i] - 1.0).abs());
+                assert!(apart.iter().all(|apart| *apart < 2e-6), "{a:?} {b:?}");
+            }
+        }
+    }
 }
