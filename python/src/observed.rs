@@ -27,6 +27,8 @@ pub struct PyObserved {
     dissipated_power: Option<f64>,
     /// How often a gap crosses a level in the period, where shooting has counted that: int or None.
     switches: Option<usize>,
+    /// Whether `motions` has the first coordinate alone, since accuracy is of an output, until the orbit is completed: bool.
+    sampled: bool,
 }
 
 impl PyObserved {
@@ -57,6 +59,7 @@ impl PyObserved {
             input_power: observed.input_power,
             dissipated_power: observed.dissipated_power,
             switches: observed.switches,
+            sampled: observed.sampled,
         })
     }
 }

@@ -105,6 +105,9 @@ def test_accuracy_is_that_of_an_output(one_sided):
     (point,) = branch.at(0.55)
     exact = one_sided.orbit(0.55, by=hertzian.Shooting(), tolerance=1e-11)
     assert abs(branch.measured("speed", point) / exact.measured("speed") - 1) < point.error
+    # Coordinates but the first are read when the orbit is completed; there is one here.
+    observed = branch.points[0].observed
+    assert list(observed.motions) == ["x"] and not branch.complete(branch.points[0]).observed.sampled
     with pytest.raises(hertzian.RequestError, match="accuracy is that of an output or a coordinate"):
         one_sided.response(0.5, 0.6, accuracy_of="contact")
 
