@@ -12,7 +12,7 @@ use super::signals::{Found, Reader};
 use super::start;
 use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
-use crate::branches::observed::Motion;
+use crate::branches::observed::{EXTREMES, Motion};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::error::Error;
@@ -96,14 +96,17 @@ pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point
     })
 }
 
-/// What was read of outputs together with the orbit, which its error is of; what was looked for where that is not all.
-fn kept(read: &[Motion], looked_for: Vec<Motion>) -> Vec<Motion> {
-    let is_whole = |motion: &Motion| motion.mean.is_some() && motion.rms.is_some();
-    if read.len() == looked_for.len() && read.iter().all(is_whole) {
-        read.to_vec()
-    } else {
-        looked_for
+/// Outputs that were looked for, with the extremes that were read together with the orbit where these are the same but for rounding: of a number that is
+/// asked for twice the last digit is the same.
+fn kept(read: &[Motion], mut looked_for: Vec<Motion>) -> Vec<Motion> {
+    let same = |a: f64, b: f64| (a - b).abs() <= EXTREMES * f64::EPSILON * a.abs().max(b.abs());
+    for (motion, read) in looked_for.iter_mut().zip(read) {
+        if same(motion.maximum, read.maximum) && same(motion.minimum, read.minimum) {
+            motion.maximum = read.maximum;
+            motion.minimum = read.minimum;
+        }
     }
+    looked_for
 }
 
 /// Signals of an orbit of shooting, with the harmonics that [`complete`] keeps.

@@ -56,6 +56,36 @@ impl Steepness {
             }
         })
     }
+
+    /// As far as peak-to-peak changes alone.
+    pub(in crate::contact_equation) fn of_peak_to_peak(peak_to_peak: f64) -> Self {
+        Self {
+            peak_to_peak,
+            multipliers: 0.0,
+        }
+    }
+
+    /// Whether it is so large that rounding of what is varied alone makes another orbit, whose value tells nothing.
+    fn is_vertical(&self, point: &Point, size: f64) -> bool {
+        let [along, moved] = self.along(f64::EPSILON * point.value);
+        let multipliers = point.stability.multipliers.iter().map(|m| m.norm());
+        let largest = multipliers.fold(1.0, f64::max);
+        let errors = [part_of(along, size), moved / (MULTIPLIERS * largest)];
+        let known = errors.iter().all(|error| error.is_finite());
+        known && errors.iter().any(|error| *error > VERTICAL)
+    }
+
+    /// Where the branch is vertical, the errors of an orbit and of its multipliers apart from those of its value: the first is given, and how far that
+    /// moves multipliers.
+    pub(in crate::contact_equation) fn own_errors(
+        &self,
+        point: &Point,
+        size: f64,
+        [own, moved]: [f64; 2],
+    ) -> Option<[f64; 2]> {
+        let errors = [part_of(own, size), point.stability.error - moved];
+        self.is_vertical(point, size).then_some(errors)
+    }
 }
 
 impl Run<'_> {
@@ -149,21 +179,6 @@ impl Run<'_> {
         // Exponents are by time.
         let time = self.equations.skeleton.length / self.equations.values.base;
         GROWN * f64::EPSILON * (growth * time).min(LARGEST).exp_m1()
-    }
-
-    /// Whether the branch is so steep that rounding of what is varied alone makes another orbit of it, whose value tells nothing.
-    pub(in crate::contact_equation) fn is_vertical(
-        &self,
-        point: &Point,
-        steepness: &Steepness,
-        size: f64,
-    ) -> bool {
-        let [along, moved] = steepness.along(f64::EPSILON * point.value);
-        let multipliers = point.stability.multipliers.iter().map(|m| m.norm());
-        let largest = multipliers.fold(1.0, f64::max);
-        let errors = [part_of(along, size), moved / (MULTIPLIERS * largest)];
-        let known = errors.iter().all(|error| error.is_finite());
-        known && errors.iter().any(|error| *error > VERTICAL)
     }
 
     /// What the output that the error is of does in an orbit by these equations.

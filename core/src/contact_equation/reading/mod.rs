@@ -219,10 +219,8 @@ impl Run<'_> {
         let parts = self.equations.skeleton.recurrence().parts;
         let found = (map.as_ref()).map(|map| self.last_map.multipliers(map, parts));
         let of_map = found.as_deref().filter(|_| at_value && shift != 0.0);
-        let steepness = self.steepness(at, &point, of_map).unwrap_or(Steepness {
-            peak_to_peak: self.rise(&point),
-            multipliers: 0.0,
-        });
+        let steepness = self.steepness(at, &point, of_map);
+        let steepness = steepness.unwrap_or(Steepness::of_peak_to_peak(self.rise(&point)));
         let [along, moved] = steepness.along(shift);
         let error = part_of(SAFETY * (apart + along) + noise, size);
         point.error = Some(stated(error));
@@ -231,10 +229,8 @@ impl Run<'_> {
             let moved = moved + self.grown() * parts as f64 * map.norm().max(1.0);
             (point.stability, spread) = stability(map, found, finer_map.as_ref(), parts, moved);
         }
-        if self.is_vertical(&point, &steepness, size) {
-            let own = part_of(SAFETY * apart + noise, size);
-            self.own_errors = Some([own, point.stability.error - SAFETY * moved]);
-        }
+        let own = [SAFETY * apart + noise, SAFETY * moved];
+        self.own_errors = steepness.own_errors(&point, size, own);
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
             stiffness,

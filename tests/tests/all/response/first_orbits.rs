@@ -474,7 +474,8 @@ hertzian::oscillator! {
 /// nearly as two orbits are known.
 #[test]
 fn branches_are_the_same_in_any_units() {
-    let branches = |request: &dyn Fn(&dyn System, [f64; 2]) -> Branch| {
+    type Request = dyn Fn(&dyn System, [f64; 2]) -> Branch;
+    let branches = |request: &Request| {
         UNITS.map(|(size, rate)| {
             let branch = request(&Meeting { size, rate }, [0.412 * rate, 0.493 * rate]);
             let points = branch.points.iter();
@@ -482,7 +483,7 @@ fn branches_are_the_same_in_any_units() {
             (branch.stopped, points.collect::<Vec<_>>())
         })
     };
-    let by_all: [&dyn Fn(&dyn System, [f64; 2]) -> Branch; 3] = [
+    let by_all: [&Request; 3] = [
         &|system, [from, to]| {
             let request = FrequencyResponse::of(system).from(from).to(to);
             request.by(HarmonicBalance::new()).run().unwrap()
