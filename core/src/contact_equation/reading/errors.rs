@@ -143,7 +143,7 @@ impl Run<'_> {
                 Accuracy::Output(output) => {
                     let changed = self.rounded(point, output);
                     if self.equations.configurations.is_empty() {
-                        return changed;
+                        return grown + changed;
                     }
                     // States of configurations are taken over and given back: twice as many roundings, of which finer equations show none.
                     let own = point.observed.outputs.get(output);
