@@ -57,6 +57,20 @@ impl Case {
             "chain" => (Box::new(chain(count, count)?), [0.2, 0.3]),
             "chain-one" => (Box::new(chain(count, 1)?), [0.275, 0.298]),
             "rotor" => (Box::new(Rotor::default()), ROTOR),
+            "bar-reduced" => {
+                return Self::reduced(&Modes::bar(count).sparse(Elastic, 10.0)?, bar, None);
+            }
+            "bar-hertz-reduced" => {
+                return Self::reduced(&Modes::bar(count).sparse(Hertz, 10.0)?, bar, None);
+            }
+            "cantilever-reduced" => {
+                let modes = Modes::cantilever(count);
+                return Self::reduced(&modes.sparse(Elastic, 50.0)?, cantilever, None);
+            }
+            "cantilever-hertz-reduced" => {
+                let modes = Modes::cantilever(count);
+                return Self::reduced(&modes.sparse(Hertz, 500.0)?, cantilever, None);
+            }
             "rotor-modes" => return Self::of_modes(&shaft(count)?),
             _ => return Err(format!("no case {kind}").into()),
         };
@@ -69,6 +83,27 @@ impl Case {
             system,
             range,
             reduction: 0.0,
+        })
+    }
+
+    /// By the vectors of a reduction with so many modes, or with those that it keeps where nothing is asked of it.
+    fn reduced(
+        structure: &SparseStructure,
+        range: [f64; 2],
+        modes: Option<usize>,
+    ) -> Result<Self, Box<dyn Error>> {
+        let begin = ProcessTime::now();
+        let mut reduction = Reduction::to(range[1]);
+        if let Some(modes) = modes {
+            reduction = reduction.modes(modes);
+        }
+        let reduced = reduction.run(structure)?;
+        Ok(Self {
+            reduction: begin.elapsed().as_secs_f64(),
+            coordinates: reduced.vectors(),
+            system: Box::new(reduced.structure(structure)?),
+            range,
+            near: None,
         })
     }
 
@@ -96,19 +131,7 @@ impl Case {
         let (from, to) = (part()?.parse()?, part()?.parse()?);
         let modes: Option<usize> = part().ok().map(str::parse).transpose()?;
         let structure = file::read(path)?;
-        let begin = ProcessTime::now();
-        let mut reduction = Reduction::to(to);
-        if let Some(modes) = modes {
-            reduction = reduction.modes(modes);
-        }
-        let reduced = reduction.run(&structure)?;
-        Ok(Self {
-            reduction: begin.elapsed().as_secs_f64(),
-            coordinates: reduced.vectors(),
-            system: Box::new(reduced.structure(&structure)?),
-            range: [from, to],
-            near: None,
-        })
+        Self::reduced(&structure, [from, to], modes)
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use hertzian::structure::{Contact, DMatrix, Structure, Turn, parameter};
 use hertzian::{Error, law::Law};
 use hertzian_structure::{
-    Damping, Direction, Load, LoadKind, SparseContact, SparseMatrix, SparseStructure,
+    Damping, Direction, Load, LoadKind, MatrixError, SparseContact, SparseMatrix, SparseStructure,
 };
 
 hertzian::law! {
@@ -112,6 +112,27 @@ impl Modes {
             .contact(stop)
             .output("tip", self.tip.clone())
             .build()
+    }
+
+    /// The same as matrices, to be reduced to what the excitation needs.
+    ///
+    /// # Errors
+    /// None of what is made here: those of a sparse matrix.
+    pub fn sparse(&self, law: impl Law + 'static, k: f64) -> Result<SparseStructure, MatrixError> {
+        let n = self.frequencies.len();
+        let diagonal = |of: &dyn Fn(f64) -> f64| {
+            let entries = self.frequencies.iter().enumerate();
+            SparseMatrix::from_triplets(n, n, entries.map(|(i, w)| (i, i, of(*w))))
+        };
+        let tip = Direction::weighted(self.tip.iter().copied().enumerate());
+        let stop = SparseContact::new("stop", Arc::new(law), tip.clone());
+        Ok(
+            SparseStructure::new(diagonal(&|_| 1.0)?, diagonal(&|w| w * w)?)
+                .damping(Damping::ratio(0.01))
+                .load(Load::force(tip.clone(), self.drive))
+                .contact(stop.arguments([k]).offset(self.distance))
+                .output("tip", tip),
+        )
     }
 }
 

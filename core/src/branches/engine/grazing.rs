@@ -34,8 +34,11 @@ const AT_END: f64 = 1e-6;
 const READ: usize = 4;
 /// Extremes that appear, or disappear, farther from their level, in units of the gap, do not come to it in the same step.
 const NEAR: f64 = 0.05;
-/// A step is halved so often where its ends do not tell which extremes went through their levels.
+/// A step is halved so often where extremes appear or disappear, or a touch is not located.
 const HALVINGS: usize = 5;
+/// And so often where the extremes at its ends do not tell why levels are crossed more or less often: two touches may be that near to each
+/// other. Only the halves that do not tell it are halved again.
+const UNEXPLAINED: usize = 12;
 
 /// A step in which levels are touched.
 struct TouchSearch<'s> {
@@ -329,17 +332,17 @@ impl TouchSearch<'_> {
         parts: &[Gaps],
     ) {
         for pair in parts.windows(2) {
-            self.between(problem, newton, [&pair[0], &pair[1]], HALVINGS);
+            self.between(problem, newton, [&pair[0], &pair[1]], 0);
         }
     }
 
-    /// Looks at a part of the step, or at both halves of it.
+    /// Looks at a part of the step, which is `halved` so often already, or at both halves of it.
     fn between(
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         [before, next]: [&Gaps; 2],
-        halvings: usize,
+        halved: usize,
     ) {
         let mut found = passed(&before.extremes, &next.extremes);
         let begun = found.iter().filter(|passage| passage.before.is_clear());
@@ -351,9 +354,12 @@ impl TouchSearch<'_> {
             before: &before.point,
             next: &next.point,
         };
-        let divided = (!explained || appeared)
-            && self.between_halves(problem, newton, [before, next], halvings);
-        if divided {
+        let divided = if explained {
+            appeared && halved < HALVINGS
+        } else {
+            halved < UNEXPLAINED
+        };
+        if divided && self.between_halves(problem, newton, [before, next], halved) {
             return;
         }
         if !explained && found.is_empty() {
@@ -363,7 +369,9 @@ impl TouchSearch<'_> {
             let mut at_once = vec![passage];
             if self.touch(problem, newton, part, &found, &mut at_once) {
                 found.retain(|other| !at_once.contains(other));
-            } else if self.between_halves(problem, newton, [before, next], halvings) {
+            } else if halved < HALVINGS
+                && self.between_halves(problem, newton, [before, next], halved)
+            {
                 // What was located already is known there.
                 return;
             } else {
@@ -373,17 +381,14 @@ impl TouchSearch<'_> {
         }
     }
 
-    /// Looks at both halves of a part, if there may be as many and an orbit between them is found. Says whether.
+    /// Looks at both halves of a part, if an orbit between them is found. Says whether.
     fn between_halves(
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         [before, next]: [&Gaps; 2],
-        halvings: usize,
+        halved: usize,
     ) -> bool {
-        if halvings == 0 {
-            return false;
-        }
         let part = Step {
             before: &before.point,
             next: &next.point,
@@ -395,8 +400,8 @@ impl TouchSearch<'_> {
         let Some(middle) = middle else {
             return false;
         };
-        self.between(problem, newton, [before, &middle], halvings - 1);
-        self.between(problem, newton, [&middle, next], halvings - 1);
+        self.between(problem, newton, [before, &middle], halved + 1);
+        self.between(problem, newton, [&middle, next], halved + 1);
         true
     }
 

@@ -82,7 +82,12 @@ fn on_the_way_to(
             found.above
         })
     };
-    let root = root(problem, newton, step, options, Aim::Below(aim), above)?;
+    let aim = if problem.corners() {
+        Aim::Below(aim)
+    } else {
+        Aim::Beside(aim)
+    };
+    let root = root(problem, newton, step, options, aim, above)?;
     let left = root.located.test.abs();
     let rate = ((to - from) / (next.above - before.above)).abs();
     (left <= TOUCHES).then_some(Reached {
