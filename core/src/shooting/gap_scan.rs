@@ -1,9 +1,11 @@
-//! The extremes of a gap along an orbit: where its rate vanishes.
+//! The extremes of a gap along an orbit: where its rate vanishes. Where it may do so twice between two samples it is followed to where it is nearest to
+//! zero.
 
 use std::f64::consts::TAU;
 
 use super::equations::Equations;
 use crate::branches::recurrence::Recurrence;
+use crate::numeric::peak;
 use crate::numeric::roots::{self, Place};
 use crate::time::Stretch;
 use crate::time::gap::Gap;
@@ -12,6 +14,11 @@ use crate::time::gap::Gap;
 const SAMPLES: f64 = 64.0;
 /// Accuracy of the phase of an extreme, in parts of the distance of two samples.
 const LOCATED: f64 = 1e-9;
+/// Slopes of a rate are differences over this part of that distance.
+const SHORT: f64 = 1e-4;
+/// Tangents that meet above this part of the smaller one of two rates tell that the rate does not vanish between them: it is above them where it
+/// is convex.
+const BOUND: f64 = 0.5;
 
 /// An extreme of a gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +46,38 @@ struct Scan<'s> {
     end: &'s mut [f64],
 }
 
+/// Where a rate that has one sign at both ends has the other between them, if it does: two extremes are between two samples there. It comes
+/// nearest to zero between ends from which it falls, and at least about as near as the tangents there meet.
+fn across([a, b]: [Place; 2], mut rate: impl FnMut(f64) -> f64) -> Option<Place> {
+    let width = b.x - a.x;
+    let (short, sign) = (SHORT * width, a.value.signum());
+    let fall = sign * (a.value - rate(a.x + short)) / short;
+    let rise = sign * (b.value - rate(b.x - short)) / short;
+    let (high, end) = (a.value.abs(), b.value.abs());
+    // high - fall x = end - rise (width - x)
+    let meet = high - fall * (high - end + rise * width) / (fall + rise);
+    if fall.min(rise) <= 0.0 || meet > BOUND * high.min(end) {
+        return None;
+    }
+    let mut found = None;
+    let ends = [a, b].map(|end| Place {
+        value: -end.value.abs(),
+        ..end
+    });
+    peak::largest(
+        |x| {
+            let value = rate(x);
+            if sign * value < 0.0 && found.is_none() {
+                found = Some(Place { x, value });
+            }
+            -sign * value
+        },
+        ends,
+        None,
+    );
+    found
+}
+
 impl Scan<'_> {
     fn stretch(&mut self, stretch: &dyn Stretch) {
         let (from, to) = stretch.phases();
@@ -52,21 +91,30 @@ impl Scan<'_> {
             x: from,
             value: self.last.unwrap_or_else(|| at(from).1),
         };
+        let mut change = f64::INFINITY;
         let mut part = 1.0;
         while part <= parts {
             let x = from + (to - from) * (part / parts);
             let value = at(x).1;
             let next = Place { x, value };
-            let turns = before.value * value < 0.0;
-            let within = LOCATED * (next.x - before.x);
-            let zero = turns.then(|| roots::root(before, next, within, |phase| at(phase).1));
-            if let Some(phase) = zero.flatten() {
-                (self.see)(Extreme {
-                    passed: self.passed + phase - from,
-                    gap: at(phase).0,
-                    largest: before.value > 0.0,
-                });
+            let between = (before.value * value > 0.0
+                && before.value.abs().min(value.abs()) <= change)
+                .then(|| across([before, next], |phase| at(phase).1));
+            let places = [before, between.flatten().unwrap_or(next), next];
+            for ends in places.windows(2) {
+                let [a, b] = [ends[0], ends[1]];
+                let within = LOCATED * (next.x - before.x);
+                let zero = (a.value * b.value < 0.0)
+                    .then(|| roots::root(a, b, within, |phase| at(phase).1));
+                if let Some(phase) = zero.flatten() {
+                    (self.see)(Extreme {
+                        passed: self.passed + phase - from,
+                        gap: at(phase).0,
+                        largest: a.value > 0.0,
+                    });
+                }
             }
+            change = (value - before.value).abs();
             // Between two switches at one phase there is no rate.
             if value.abs() > 0.0 {
                 before = next;

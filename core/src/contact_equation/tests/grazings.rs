@@ -247,3 +247,47 @@ fn a_walk_goes_on_where_the_last_stretch_vanishes() {
         }
     }
 }
+
+crate::oscillator! {
+    /// Two coordinates on a contact that turns with two fifths of the frequency.
+    Turning(x, y) {
+        let turn = 2/5*omega*t;
+        law stop(gap) { gap > 0 => 85335*gap^1.5*(1 + 21.75*dot(gap)), else => 0 }
+        2040*ddot(x) + 606*dot(x) + 10610*(x - y) + 79*(dot(x) - dot(y)) + cos(turn)*stop(x*cos(turn) + y*sin(turn) + 0.00076) = 0;
+        4242*ddot(y) + 87*dot(y) + 8787*y + 10610*(y - x) + 79*(dot(y) - dot(x)) + sin(turn)*stop(x*cos(turn) + y*sin(turn) + 0.00076)
+            = 3.258*cos(omega*t) - 36;
+    }
+}
+
+/// While a contact comes to be closed through, the two extremes between which it opened touch one after the other, in a small part of a step. They are far
+/// nearer to each other than samples of a motion.
+#[test]
+fn touches_that_are_near_to_each_other_are_told_apart() {
+    let system = Turning {};
+    let request = |from, to| FrequencyResponse::of(&system).from(from).to(to);
+    let near = |branch: Branch| {
+        assert_eq!(branch.turns, []);
+        let values = touches(&branch).into_iter().map(|event| event.point.value);
+        let mut values: Vec<f64> = values.filter(|x| (1.5..1.51).contains(x)).collect();
+        values.sort_by(f64::total_cmp);
+        values
+    };
+    let moved = |from, to| {
+        let shooting = Shooting::new().tolerance(1e-12);
+        near(request(from, to).by(shooting).run().unwrap())
+    };
+    let solved = |from, to| near(request(from, to).by(ContactEquation::new()).run().unwrap());
+    let exact = moved(1.505, 1.507);
+    let [a, b] = exact[..] else {
+        panic!("{exact:?}");
+    };
+    assert!(b - a < 2e-5, "{exact:?}");
+    let found = [moved(1.507, 1.505), solved(1.44, 2.56), solved(2.56, 1.44)];
+    for touches in found {
+        assert_eq!(touches.len(), 2, "{touches:?}");
+        assert!(
+            (touches[0] - a).abs().max((touches[1] - b).abs()) < 1e-10,
+            "{touches:?} {exact:?}"
+        );
+    }
+}
