@@ -27,7 +27,80 @@ pub(crate) struct Kept<'k> {
     pub(crate) turns: &'k [Turn],
 }
 
+/// Where something is on a branch: behind so many of its points, at a value of what is varied.
+#[derive(Debug, Clone, Copy)]
+struct Mark {
+    after: usize,
+    value: f64,
+}
+
+/// The order along a branch, with these values at its points, of what is at these places. What is behind the same point is in the order of values where all of it is between that point
+/// and the next one; else, as where the branch turns between them, it stays as it was found.
+fn order_along(points: &[f64], marks: &[Mark]) -> Vec<usize> {
+    let way = |mark: &Mark| {
+        let (from, to) = (
+            points.get(mark.after.checked_sub(1)?)?,
+            points.get(mark.after)?,
+        );
+        let inside = |other: &&Mark| (other.value - from) * (other.value - to) <= 0.0;
+        let mut same = marks.iter().filter(|other| other.after == mark.after);
+        same.all(|other| inside(&other))
+            .then(|| (mark.value - from).abs())
+    };
+    let ways: Vec<f64> = marks.iter().map(|mark| way(mark).unwrap_or(0.0)).collect();
+    let mut order: Vec<usize> = (0..marks.len()).collect();
+    order.sort_by(|&a, &b| {
+        let after = marks[a].after.cmp(&marks[b].after);
+        after.then(ways[a].total_cmp(&ways[b]))
+    });
+    order
+}
+
+/// What is in a list, in another order.
+fn arranged<T>(list: Vec<T>, order: &[usize]) -> Vec<T> {
+    let mut list: Vec<Option<T>> = list.into_iter().map(Some).collect();
+    order
+        .iter()
+        .filter_map(|&place| list[place].take())
+        .collect()
+}
+
+/// How events and turns were rearranged: where each one was before.
+pub(crate) struct Rearranged {
+    pub(crate) events: Vec<usize>,
+    pub(crate) turns: Vec<usize>,
+}
+
+/// Brings what happened in the order of the branch: what a step hid is found one step later, and what a step shows is found kind by kind.
+pub(crate) fn sort(points: &[Point], events: &mut Vec<Event>, turns: &mut Vec<Turn>) -> Rearranged {
+    let values: Vec<f64> = points.iter().map(|point| point.value).collect();
+    let of_events = events.iter().map(|event| Mark {
+        after: event.after,
+        value: event.point.value,
+    });
+    let of_turns = turns.iter().map(|turn| Mark {
+        after: turn.after,
+        value: turn.value,
+    });
+    let order = Rearranged {
+        events: order_along(&values, &of_events.collect::<Vec<Mark>>()),
+        turns: order_along(&values, &of_turns.collect::<Vec<Mark>>()),
+    };
+    *events = arranged(std::mem::take(events), &order.events);
+    *turns = arranged(std::mem::take(turns), &order.turns);
+    order
+}
+
 impl Record {
+    /// Brings what happened in the order of the branch, with places in it.
+    pub(crate) fn sort(&mut self, places: Option<&mut Places>) {
+        let order = sort(&self.points, &mut self.events, &mut self.turns);
+        if let Some(places) = places {
+            Places::sorted(&mut places.events, &order.events);
+            Places::sorted(&mut places.turns, &order.turns);
+        }
+    }
+
     /// A branch of a system that has ended so. What it cost, and what it goes on from, is for the method to add.
     pub(crate) fn into_branch(self, system: &dyn System, varied: String, stopped: Stop) -> Branch {
         let Self {
@@ -139,4 +212,35 @@ fn taken<T: Clone>(places: &[usize], from: &[T]) -> Option<Vec<T>> {
         .iter()
         .map(|&place| from.get(place).cloned())
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Mark, order_along};
+
+    fn marks(of: &[[f64; 2]]) -> Vec<Mark> {
+        of.iter()
+            .map(|&[after, value]| Mark {
+                after: after as usize,
+                value,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn what_is_behind_one_point_is_in_the_order_of_the_branch() {
+        let found = marks(&[[2.0, 1.7], [1.0, 0.5], [2.0, 1.2]]);
+        assert_eq!(order_along(&[0.0, 1.0, 2.0], &found), [1, 2, 0]);
+        let found = marks(&[[1.0, 1.2], [1.0, 1.7]]);
+        assert_eq!(order_along(&[2.0, 1.0], &found), [1, 0]);
+    }
+
+    #[test]
+    fn what_is_beside_a_fold_or_the_end_stays_as_it_was_found() {
+        let beyond = marks(&[[1.0, 2.1], [1.0, 1.5]]);
+        assert_eq!(order_along(&[1.0, 2.0], &beyond), [0, 1]);
+        let behind = marks(&[[2.0, 2.0], [2.0, 1.5], [0.0, 1.0]]);
+        assert_eq!(order_along(&[1.0, 2.0], &behind), [2, 0, 1]);
+        assert_eq!(order_along(&[], &[]), [0; 0]);
+    }
 }

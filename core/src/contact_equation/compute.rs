@@ -251,7 +251,7 @@ fn options(problem: &ContactProblem, from: f64, to: f64) -> FollowOptions {
 fn ended(
     problem: &ContactProblem,
     run: Run<'_>,
-    rest: Option<Box<Rest>>,
+    mut rest: Option<Box<Rest>>,
     outcome: Result<Stop, NewtonError>,
     from: f64,
     started: Instant,
@@ -270,7 +270,9 @@ fn ended(
         }
     };
     let Run {
-        record, statistics, ..
+        mut record,
+        statistics,
+        ..
     } = run;
     if let (true, Stop::StepTooShort { reason, .. }) = (record.points.is_empty(), stopped) {
         // The first orbit was solved for, and cannot be told to be one.
@@ -282,6 +284,7 @@ fn ended(
     }
     let asked = &problem.asked;
     let (system, varied) = (asked.system.as_ref(), asked.varied.clone());
+    record.sort(rest.as_mut().map(|rest| &mut rest.walk.kept));
     let branch = Branch {
         statistics,
         elapsed: started.elapsed(),

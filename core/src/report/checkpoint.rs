@@ -19,6 +19,7 @@ use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::checkpoint::{Keep, Rest};
 use crate::branches::engine::Places;
 use crate::branches::point::{Event, Point};
+use crate::branches::record;
 use crate::branches::record::Kept;
 use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
@@ -349,21 +350,18 @@ fn joined<'l>(about: About, lines: impl Iterator<Item = &'l [u8]>) -> serde_json
 impl Branch {
     /// Brings events and turns in the order of a branch that has ended, and tells what it goes on from where they are now.
     fn sort(&mut self, rest: &mut Value) {
-        let after = self.events.iter().map(|event| event.after);
-        move_places(rest, "events", &after.collect::<Vec<usize>>());
-        let after = self.turns.iter().map(|turn| turn.after);
-        move_places(rest, "turns", &after.collect::<Vec<usize>>());
-        self.events.sort_by_key(|event| event.after);
-        self.turns.sort_by_key(|turn| turn.after);
+        let order = record::sort(&self.points, &mut self.events, &mut self.turns);
+        move_places(rest, "events", &order.events);
+        move_places(rest, "turns", &order.turns);
     }
 }
 
-fn move_places(rest: &mut Value, name: &str, after: &[usize]) {
+fn move_places(rest: &mut Value, name: &str, order: &[usize]) {
     let Some(list) = rest.pointer_mut(&format!("/walk/kept/{name}")) else {
         return;
     };
     if let Ok(mut places) = serde_json::from_value::<Vec<usize>>(list.clone()) {
-        Places::sorted(&mut places, after);
+        Places::sorted(&mut places, order);
         *list = places.into();
     }
 }

@@ -17,7 +17,6 @@ use crate::balance_branch::motion;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::balance_branch::run::{Followed, Rest, Run};
 use crate::branches::branch::{Branch, Further};
-use crate::branches::engine::Places;
 use crate::branches::error::Attempts;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
@@ -257,17 +256,7 @@ fn gathered(asked: Asked<'_>, followed: Followed) -> Part<Rest> {
         statistics,
         mut rest,
     } = followed;
-    let (events, turns) = (&mut record.events, &mut record.turns);
-    if let Some(rest) = &mut rest {
-        let kept = rest.kept();
-        let after: Vec<usize> = events.iter().map(|event| event.after).collect();
-        Places::sorted(&mut kept.events, &after);
-        let after: Vec<usize> = turns.iter().map(|turn| turn.after).collect();
-        Places::sorted(&mut kept.turns, &after);
-    }
-    // What a step hid is found one step later.
-    events.sort_by_key(|event| event.after);
-    turns.sort_by_key(|turn| turn.after);
+    record.sort(rest.as_mut().map(|rest| rest.kept()));
     let request = asked.request;
     let branch = Branch {
         statistics,

@@ -163,12 +163,13 @@ fn followed(
 /// The branch that a run has gathered.
 fn as_branch(problem: &ShootingProblem, run: Run<'_>, stopped: Stop, started: Instant) -> Followed {
     let Run {
-        record,
+        mut record,
         statistics,
         work,
-        rest,
+        mut rest,
         ..
     } = run;
+    record.sort(rest.as_mut().map(|rest| &mut rest.walk.kept));
     let (system, varied) = (problem.system.as_ref(), problem.varied.clone());
     let branch = Branch {
         statistics,

@@ -75,10 +75,8 @@ impl Places {
         }
     }
 
-    /// The places of what is sorted by the number of points before it, as [`sort_by_key`](slice::sort_by_key) does.
-    pub(crate) fn sorted(places: &mut [usize], after: &[usize]) {
-        let mut order: Vec<usize> = (0..after.len()).collect();
-        order.sort_by_key(|&place| after[place]);
+    /// The places of what is brought into this order.
+    pub(crate) fn sorted(places: &mut [usize], order: &[usize]) {
         for place in places {
             if let Some(new) = order.iter().position(|old| old == place) {
                 *place = new;
