@@ -1,7 +1,9 @@
 //! Eigenvalues of small matrices, and how far two sets of them are apart.
 
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
-use nalgebra::{Complex, DMatrix, DVector, Schur};
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::francis;
 
 /// More iterations for eigenvalues are never made.
 pub(crate) const ITERATIONS: usize = 10_000;
@@ -28,12 +30,9 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     }
     let mut matrix = matrix.clone();
     balance(&mut matrix);
-    // With a bound on the iterations, which the plain call does not have.
-    let schur = ROUNDINGS.into_iter().find_map(|roundings| {
-        let small = roundings * f64::EPSILON;
-        Schur::try_new(matrix.clone(), small, ITERATIONS)
-    });
-    let values = schur.map(|schur| schur.complex_eigenvalues().iter().copied().collect());
+    let values = ROUNDINGS
+        .into_iter()
+        .find_map(|roundings| francis::eigenvalues(matrix.clone(), roundings));
     sort(values.unwrap_or_default())
 }
 
