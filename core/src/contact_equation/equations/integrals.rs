@@ -21,8 +21,8 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use crate::contact_equation::collocation::nodes::Nodes;
-use crate::contact_equation::linear_part::block::{Block, Pair, add_both, times};
+use crate::contact_equation::collocation::nodes::{Between, Nodes};
+use crate::contact_equation::linear_part::block::{Block, Pair, add, add_both, times};
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::values::{Values, pair};
 use crate::contact_equation::skeleton::interval::Active;
@@ -49,6 +49,9 @@ pub(super) struct Integrals {
     kernels: Found,
     over_ways: Found,
     ways: Vec<f64>,
+    /// Forces at the points of a rule, contact by contact, where directions stand: those of the rule that was asked for last.
+    of_contacts: Vec<f64>,
+    rule: Option<&'static Between>,
     /// What the forces do to the states of a pair at the points of the rule.
     at_points: [Vec<f64>; 2],
     /// Sums over nodes for the states of a pair.
@@ -86,6 +89,8 @@ impl Integrals {
             kernels: Found::default(),
             over_ways: Found::default(),
             ways: vec![0.0; targets],
+            of_contacts: Vec::new(),
+            rule: None,
             at_points: [Vec::new(), Vec::new()],
             sums: std::array::from_fn(|_| vec![0.0; targets]),
             row: vec![0.0; order],
@@ -99,6 +104,7 @@ impl Integrals {
     /// Everything of an interval.
     pub(in crate::contact_equation) fn fill(&mut self, of: &Loaded<'_>) {
         self.nodes = of.nodes.count();
+        self.rule = None;
         self.ways.clear();
         let mut before = 0.0;
         self.ways.extend(of.nodes.targets.iter().map(|&psi| {
@@ -224,14 +230,9 @@ impl Integrals {
 
     /// (2) of a pair, whose kernels are known.
     fn by_time(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
-        let (n, targets, time) = (self.nodes, self.targets(), of.time);
+        let (targets, time) = (self.targets(), of.time);
         let rule = of.nodes.between(block.rate() * time.abs());
-        let loads = [0, 1].map(|i| &self.load[0][(2 * r + i) * n..][..n]);
-        let at_points = self.at_points.each_mut().map(|of| {
-            of.resize(rule.left.len(), 0.0);
-            &mut of[..]
-        });
-        point_products(&rule.weighted, loads, at_points);
+        self.loads_at_points(of, r, rule);
         let (mut integral, mut slope) = ([0.0; 2], [0.0; 2]);
         for (way, &step) in self.ways.iter().enumerate() {
             let e = block.matrix_of(self.over_ways.kernel(way));
@@ -250,6 +251,36 @@ impl Integrals {
             }
             for i in 0..2 {
                 self.by_time[(2 * r + i) * targets + way] = slope[i];
+            }
+        }
+    }
+
+    /// What the forces do to the states of a pair at the points of a rule.
+    fn loads_at_points(&mut self, of: &Loaded<'_>, r: usize, rule: &'static Between) {
+        let (n, order, points) = (self.nodes, self.row.len(), rule.left.len());
+        for to in &mut self.at_points {
+            to.clear();
+            to.resize(points, 0.0);
+        }
+        if self.moves {
+            for (i, to) in self.at_points.iter_mut().enumerate() {
+                let load = &self.load[0][(2 * r + i) * n..][..n];
+                write_products(&rule.weighted, load, to);
+            }
+            return;
+        }
+        if !self.rule.is_some_and(|known| std::ptr::eq(known, rule)) {
+            self.of_contacts.resize(of.active.len() * points, 0.0);
+            let to = self.of_contacts.chunks_exact_mut(points);
+            for (active, to) in of.active.iter().zip(to) {
+                write_products(&rule.weighted, &of.u[active.first..][..n], to);
+            }
+            self.rule = Some(rule);
+        }
+        for (place, forces) in self.of_contacts.chunks_exact(points).enumerate() {
+            for (i, to) in self.at_points.iter_mut().enumerate() {
+                let by = self.input[(place * order + 2 * r + i) * n];
+                add(to, by, forces);
             }
         }
     }
@@ -392,20 +423,17 @@ fn products(tables: [&[f64]; 2], loads: [&[f64]; 2], sums: [&mut [f64]; 4]) {
     }
 }
 
-/// Products of rows with both loads, row by row. Nodes are a multiple of four.
+/// Writes the products of rows with a load, row by row. Nodes are a multiple of four.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn point_products(rows: &[f64], loads: [&[f64]; 2], [to_first, to_second]: [&mut [f64]; 2]) {
-    let [x, y] = loads.map(|load| load.as_chunks::<4>().0);
-    let to = to_first.iter_mut().zip(to_second);
-    for (row, (first, second)) in rows.chunks_exact(loads[0].len()).zip(to) {
-        let (mut a, mut b) = ([0.0; 4], [0.0; 4]);
-        for ((group, x), y) in row.as_chunks::<4>().0.iter().zip(x).zip(y) {
+fn write_products(rows: &[f64], load: &[f64], to: &mut [f64]) {
+    let groups = load.as_chunks::<4>().0;
+    for (row, to) in rows.chunks_exact(load.len()).zip(to) {
+        let mut sums = [0.0; 4];
+        for (row, load) in row.as_chunks::<4>().0.iter().zip(groups) {
             for l in 0..4 {
-                a[l] += group[l] * x[l];
-                b[l] += group[l] * y[l];
+                sums[l] += row[l] * load[l];
             }
         }
-        *first = (a[0] + a[2]) + (a[1] + a[3]);
-        *second = (b[0] + b[2]) + (b[1] + b[3]);
+        *to = (sums[0] + sums[2]) + (sums[1] + sums[3]);
     }
 }
