@@ -39,8 +39,8 @@ const LEAST: f64 = 1e-280;
 /// Steps to a row at most, of the whole matrix.
 const STEPS: usize = 30;
 
-/// The eigenvalues, in the order of the diagonal of the Schur form, so many roundings being nothing below it; `None` where they do not settle.
-pub(super) fn eigenvalues(mut matrix: DMatrix<f64>, roundings: f64) -> Option<Vec<Complex<f64>>> {
+/// The eigenvalues, in the order of the diagonal of the Schur form, what is so small beside it being nothing; `None` where they do not settle.
+pub(super) fn eigenvalues(mut matrix: DMatrix<f64>, small: f64) -> Option<Vec<Complex<f64>>> {
     let order = matrix.nrows();
     let mut values = vec![Complex::new(0.0, 0.0); order];
     let unit = matrix.amax();
@@ -49,7 +49,6 @@ pub(super) fn eigenvalues(mut matrix: DMatrix<f64>, roundings: f64) -> Option<Ve
     }
     // Products of entries stay in the range of numbers.
     matrix /= unit;
-    let small = roundings * f64::EPSILON;
     if !reduced(matrix.as_mut_slice(), order, small, &mut values) {
         return None;
     }
@@ -347,7 +346,7 @@ mod tests {
     use crate::numeric::spectrum::{distance, sort};
 
     fn found(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
-        sort(eigenvalues(matrix.clone(), 1.0).expect("they settle"))
+        sort(eigenvalues(matrix.clone(), f64::EPSILON).expect("they settle"))
     }
 
     fn number(i: usize) -> f64 {

@@ -1,7 +1,7 @@
 //! Eigenvalues of small matrices, and how far two sets of them are apart.
 
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 use super::francis;
 
@@ -14,6 +14,23 @@ const ROUNDINGS: [f64; 3] = [1.0, 8.0, 64.0];
 
 /// Eigenvalues, largest modulus first; of a pair of equal modulus the one with positive imaginary part first.
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    eigenvalues_by(matrix, |matrix, small| {
+        // With a bound on the iterations, which the plain call does not have.
+        let schur = Schur::try_new(matrix, small, ITERATIONS)?;
+        Some(schur.complex_eigenvalues().iter().copied().collect())
+    })
+}
+
+/// The same of a map, of which a branch has several at every point: by [`francis`].
+pub(crate) fn eigenvalues_of_map(map: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    eigenvalues_by(map, francis::eigenvalues)
+}
+
+/// Those of a matrix of more than two rows by a method, which is told what is nothing below the diagonal.
+fn eigenvalues_by(
+    matrix: &DMatrix<f64>,
+    method: impl Fn(DMatrix<f64>, f64) -> Option<Vec<Complex<f64>>>,
+) -> Vec<Complex<f64>> {
     if matrix.iter().any(|x| !x.is_finite()) {
         return Vec::new();
     }
@@ -32,7 +49,7 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     balance(&mut matrix);
     let values = ROUNDINGS
         .into_iter()
-        .find_map(|roundings| francis::eigenvalues(matrix.clone(), roundings));
+        .find_map(|roundings| method(matrix.clone(), roundings * f64::EPSILON));
     sort(values.unwrap_or_default())
 }
 

@@ -103,10 +103,9 @@ impl Tests {
         let resolved = map.filter(|_| f64::EPSILON * largest < UNRESOLVED);
         let states = map.map_or(0, DMatrix::nrows);
         let left_out = states.saturating_sub(multipliers.len());
-        // Eigenvalues are those of one matrix near the map, which is as near as that of its factors: their product is its determinant.
         let determinant = |shift: f64| {
             resolved.map_or(f64::NAN, |map| {
-                if multipliers.is_empty() {
+                if left_out == 0 || multipliers.is_empty() {
                     let shifted = map + DMatrix::identity(states, states) * shift;
                     return shifted.determinant();
                 }

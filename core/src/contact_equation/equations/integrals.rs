@@ -21,8 +21,8 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use crate::contact_equation::collocation::nodes::{Between, Nodes};
-use crate::contact_equation::linear_part::block::{Block, Pair, add, add_both, times};
+use crate::contact_equation::collocation::nodes::Nodes;
+use crate::contact_equation::linear_part::block::{Block, Pair, add_both, times};
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::values::{Values, pair};
 use crate::contact_equation::skeleton::interval::Active;
@@ -45,13 +45,8 @@ pub(super) struct Integrals {
     by_time: Vec<f64>,
     /// Directions move with the phase.
     moves: bool,
-    /// Kernels at the points of the rule, and over the ways between targets, which are such parts of the interval.
+    /// Kernels at the points of the rule.
     kernels: Found,
-    over_ways: Found,
-    ways: Vec<f64>,
-    /// Forces at the points of a rule, contact by contact, where directions stand: those of the rule that was asked for last.
-    of_contacts: Vec<f64>,
-    rule: Option<&'static Between>,
     /// What the forces do to the states of a pair at the points of the rule.
     at_points: [Vec<f64>; 2],
     /// Sums over nodes for the states of a pair.
@@ -87,10 +82,6 @@ impl Integrals {
             by_time: vec![0.0; targets * order],
             moves: false,
             kernels: Found::default(),
-            over_ways: Found::default(),
-            ways: vec![0.0; targets],
-            of_contacts: Vec::new(),
-            rule: None,
             at_points: [Vec::new(), Vec::new()],
             sums: std::array::from_fn(|_| vec![0.0; targets]),
             row: vec![0.0; order],
@@ -104,14 +95,6 @@ impl Integrals {
     /// Everything of an interval.
     pub(in crate::contact_equation) fn fill(&mut self, of: &Loaded<'_>) {
         self.nodes = of.nodes.count();
-        self.rule = None;
-        self.ways.clear();
-        let mut before = 0.0;
-        self.ways.extend(of.nodes.targets.iter().map(|&psi| {
-            let way = psi - before;
-            before = psi;
-            way
-        }));
         let contacts = of.active.iter();
         self.moves = contacts
             .map(|active| &of.values.contacts[active.contact])
@@ -177,9 +160,10 @@ impl Integrals {
         let twice = &mut self.twice[r * size..][..size];
         let rule = of.nodes.between(block.rate() * time.abs());
         self.kernels.find(block, &rule.left, time);
-        self.over_ways.find(block, &self.ways, time);
-        for way in 0..self.ways.len() {
-            let step = self.over_ways.kernel(way);
+        let mut before = 0.0;
+        for (way, &psi) in of.nodes.targets.iter().enumerate() {
+            let step = block.kernel((psi - before) * time);
+            before = psi;
             let (done, to) = (way * n, (way + 1) * n);
             if way == 0 {
                 once[..n].fill(0.0);
@@ -230,12 +214,19 @@ impl Integrals {
 
     /// (2) of a pair, whose kernels are known.
     fn by_time(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
-        let (targets, time) = (self.targets(), of.time);
+        let (n, targets, time) = (self.nodes, self.targets(), of.time);
         let rule = of.nodes.between(block.rate() * time.abs());
-        self.loads_at_points(of, r, rule);
+        for (i, to) in self.at_points.iter_mut().enumerate() {
+            to.resize(rule.left.len(), 0.0);
+            let load = &self.load[0][(2 * r + i) * n..][..n];
+            write_products(&rule.weighted, load, to);
+        }
         let (mut integral, mut slope) = ([0.0; 2], [0.0; 2]);
-        for (way, &step) in self.ways.iter().enumerate() {
-            let e = block.matrix_of(self.over_ways.kernel(way));
+        let mut before = 0.0;
+        for (way, &psi) in of.nodes.targets.iter().enumerate() {
+            let step = psi - before;
+            before = psi;
+            let e = block.exponential(step * time);
             let driven = times(block.matrix, integral);
             slope = times(e, [0, 1].map(|i| slope[i] + step * driven[i]));
             integral = times(e, integral);
@@ -251,36 +242,6 @@ impl Integrals {
             }
             for i in 0..2 {
                 self.by_time[(2 * r + i) * targets + way] = slope[i];
-            }
-        }
-    }
-
-    /// What the forces do to the states of a pair at the points of a rule.
-    fn loads_at_points(&mut self, of: &Loaded<'_>, r: usize, rule: &'static Between) {
-        let (n, order, points) = (self.nodes, self.row.len(), rule.left.len());
-        for to in &mut self.at_points {
-            to.clear();
-            to.resize(points, 0.0);
-        }
-        if self.moves {
-            for (i, to) in self.at_points.iter_mut().enumerate() {
-                let load = &self.load[0][(2 * r + i) * n..][..n];
-                write_products(&rule.weighted, load, to);
-            }
-            return;
-        }
-        if !self.rule.is_some_and(|known| std::ptr::eq(known, rule)) {
-            self.of_contacts.resize(of.active.len() * points, 0.0);
-            let to = self.of_contacts.chunks_exact_mut(points);
-            for (active, to) in of.active.iter().zip(to) {
-                write_products(&rule.weighted, &of.u[active.first..][..n], to);
-            }
-            self.rule = Some(rule);
-        }
-        for (place, forces) in self.of_contacts.chunks_exact(points).enumerate() {
-            for (i, to) in self.at_points.iter_mut().enumerate() {
-                let by = self.input[(place * order + 2 * r + i) * n];
-                add(to, by, forces);
             }
         }
     }

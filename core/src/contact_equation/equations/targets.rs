@@ -11,7 +11,6 @@
 
 use super::integrals::Integrals;
 use crate::contact_equation::linear_part::block::{Pair, add, add_both, times};
-use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::values::{Values, pair, turn};
 
 /// An interval that begins with these states.
@@ -51,8 +50,6 @@ pub(super) struct Targets {
     /// Of one wave.
     cosine: Vec<f64>,
     sine: Vec<f64>,
-    /// Of one pair.
-    found: Found,
 }
 
 impl Targets {
@@ -72,7 +69,6 @@ impl Targets {
             resonant: std::array::from_fn(|_| all()),
             cosine: one(),
             sine: one(),
-            found: Found::default(),
         }
     }
 
@@ -122,18 +118,15 @@ impl Targets {
             let place = r * self.count..(r + 1) * self.count;
             let kernels = self.kernels.each_mut().map(|of| &mut of[place.clone()]);
             let [c, k] = kernels;
-            if block.is_free() {
-                c.fill(1.0);
-                for (k, psi) in k.iter_mut().zip(way.psi) {
-                    *k = psi * way.time;
-                }
-            } else if let ([c], [k], [psi]) = (&mut *c, &mut *k, way.psi) {
-                let kernel = block.kernel(psi * way.time);
-                (*c, *k) = (kernel.c, kernel.k);
-            } else {
-                self.found.find(block, way.psi, way.time);
-                c.copy_from_slice(&self.found.c[..self.count]);
-                k.copy_from_slice(&self.found.k[..self.count]);
+            let free = block.is_free();
+            for ((c, k), psi) in c.iter_mut().zip(k).zip(way.psi) {
+                let time = psi * way.time;
+                (*c, *k) = if free {
+                    (1.0, time)
+                } else {
+                    let kernel = block.kernel(time);
+                    (kernel.c, kernel.k)
+                };
             }
             self.compose(way, r, resonant);
         }

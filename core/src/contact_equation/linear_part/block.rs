@@ -294,11 +294,7 @@ impl Block {
 
     /// `e^(A s)`
     pub(in crate::contact_equation) fn exponential(&self, s: f64) -> Square {
-        self.matrix_of(self.kernel(s))
-    }
-
-    /// The same from its kernel.
-    pub(in crate::contact_equation) fn matrix_of(&self, Kernel { c, k }: Kernel) -> Square {
+        let Kernel { c, k } = self.kernel(s);
         let d = self.deviation;
         [
             [c + k * d[0][0], k * d[0][1]],
