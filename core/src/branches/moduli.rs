@@ -16,7 +16,7 @@ use nalgebra::{Complex, DMatrix};
 use super::point::Event;
 use crate::event::EventKind;
 use crate::numeric::leading;
-use crate::numeric::spectrum::{self, eigenvalues};
+use crate::numeric::spectrum::{self, eigenvalues_of_map};
 
 /// No modulus is told from zero below the exponential of this.
 const LEAST: f64 = -30.0;
@@ -33,7 +33,7 @@ const SAME: f64 = 1e-10;
 
 /// Eigenvalues of a map, largest first: all of them, or of many states the [leading] ones.
 pub(crate) fn of_map(map: &DMatrix<f64>) -> Vec<Complex<f64>> {
-    leading::leading(map).map_or_else(|| eigenvalues(map), spectrum::sort)
+    leading::leading(map).map_or_else(|| eigenvalues_of_map(map), spectrum::sort)
 }
 
 /// Multipliers over the whole period, of a map over one of its parts; largest first.

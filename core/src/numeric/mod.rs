@@ -4,6 +4,7 @@ pub(crate) mod decimal;
 pub(crate) mod estimate;
 pub(crate) mod exponential;
 pub mod fourier;
+mod francis;
 pub(crate) mod leading;
 pub(crate) mod linear;
 pub(crate) mod peak;

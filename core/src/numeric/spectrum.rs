@@ -3,6 +3,8 @@
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
+use super::francis;
+
 /// More iterations for eigenvalues are never made.
 pub(crate) const ITERATIONS: usize = 10_000;
 
@@ -12,6 +14,23 @@ const ROUNDINGS: [f64; 3] = [1.0, 8.0, 64.0];
 
 /// Eigenvalues, largest modulus first; of a pair of equal modulus the one with positive imaginary part first.
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    eigenvalues_by(matrix, |matrix, small| {
+        // With a bound on the iterations, which the plain call does not have.
+        let schur = Schur::try_new(matrix, small, ITERATIONS)?;
+        Some(schur.complex_eigenvalues().iter().copied().collect())
+    })
+}
+
+/// The same of a map, of which a branch has several at every point: by [`francis`].
+pub(crate) fn eigenvalues_of_map(map: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    eigenvalues_by(map, francis::eigenvalues)
+}
+
+/// Those of a matrix of more than two rows by a method, which is told what is nothing below the diagonal.
+fn eigenvalues_by(
+    matrix: &DMatrix<f64>,
+    method: impl Fn(DMatrix<f64>, f64) -> Option<Vec<Complex<f64>>>,
+) -> Vec<Complex<f64>> {
     if matrix.iter().any(|x| !x.is_finite()) {
         return Vec::new();
     }
@@ -28,12 +47,9 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     }
     let mut matrix = matrix.clone();
     balance(&mut matrix);
-    // With a bound on the iterations, which the plain call does not have.
-    let schur = ROUNDINGS.into_iter().find_map(|roundings| {
-        let small = roundings * f64::EPSILON;
-        Schur::try_new(matrix.clone(), small, ITERATIONS)
-    });
-    let values = schur.map(|schur| schur.complex_eigenvalues().iter().copied().collect());
+    let values = ROUNDINGS
+        .into_iter()
+        .find_map(|roundings| method(matrix.clone(), roundings * f64::EPSILON));
     sort(values.unwrap_or_default())
 }
 

@@ -91,13 +91,17 @@ impl Meeting {
 
 /// The places of the nearest and the second nearest to one.
 fn nearest_two(among: &[Complex<f64>], to: Complex<f64>) -> [Option<usize>; 2] {
-    let apart = |place: usize| (among[place] - to).norm();
     let mut found = [None, None];
-    for place in 0..among.len() {
-        if found[0].is_none_or(|first| apart(place) < apart(first)) {
+    // Squares are in the order of distances, and logarithms are no large numbers.
+    let mut apart = [f64::INFINITY; 2];
+    for (place, pair) in among.iter().enumerate() {
+        let square = (pair - to).norm_sqr();
+        if found[0].is_none() || square < apart[0] {
             found = [Some(place), found[0]];
-        } else if found[1].is_none_or(|second| apart(place) < apart(second)) {
+            apart = [square, apart[0]];
+        } else if found[1].is_none() || square < apart[1] {
             found[1] = Some(place);
+            apart[1] = square;
         }
     }
     found

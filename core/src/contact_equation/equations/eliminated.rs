@@ -25,6 +25,9 @@ struct Solver {
     matrix: Matrix,
     lu: Lu,
     column: Vec<f64>,
+    /// How switches change by states, row by row, and a row of the map.
+    through: Vec<f64>,
+    row: Vec<f64>,
 }
 
 impl Solver {
@@ -33,6 +36,8 @@ impl Solver {
             matrix: Matrix::zeros(order),
             lu: Lu::new(order),
             column: vec![0.0; order],
+            through: Vec::new(),
+            row: Vec::new(),
         }
     }
 
@@ -45,30 +50,37 @@ impl Solver {
         image: &SignedPermutation,
     ) -> Option<DMatrix<f64>> {
         let row = |row: usize| &derivatives[row * (unknowns + 1)..][..unknowns];
-        let mut map = DMatrix::from_fn(order, order, |i, j| row(i)[j]);
-        for i in 0..order {
-            let (place, sign) = image.state_entry(i, order / 2);
-            map[(i, place)] += sign;
-        }
-        for i in 0..unknowns - order {
+        let inner = unknowns - order;
+        for i in 0..inner {
             let entries = &row(order + i)[order..];
             self.matrix.row_mut(i).copy_from_slice(entries);
         }
         self.lu.factorise(&mut self.matrix).ok()?;
+        self.through.resize(inner * order, 0.0);
         for j in 0..order {
             for (i, x) in self.column.iter_mut().enumerate() {
                 *x = row(order + i)[j];
             }
             self.lu.solve(&self.matrix, &mut self.column);
-            for i in 0..order {
-                let through = row(i)[order..].iter().zip(&self.column);
-                map[(i, j)] -= through.map(|(a, x)| a * x).sum::<f64>();
+            for (i, x) in self.column.iter().enumerate() {
+                self.through[i * order + j] = *x;
             }
         }
-        let whole = map.clone();
+        let mut map = DMatrix::zeros(order, order);
+        self.row.resize(order, 0.0);
         for i in 0..order {
+            let (entries, by_switches) = row(i).split_at(order);
+            self.row.copy_from_slice(entries);
             let (place, sign) = image.state_entry(i, order / 2);
-            map.row_mut(place).copy_from(&(sign * whole.row(i)));
+            self.row[place] += sign;
+            for (factor, through) in by_switches.iter().zip(self.through.chunks_exact(order)) {
+                for (x, by) in self.row.iter_mut().zip(through) {
+                    *x -= factor * by;
+                }
+            }
+            for (j, x) in self.row.iter().enumerate() {
+                map[(place, j)] = sign * x;
+            }
         }
         Some(map)
     }
@@ -90,11 +102,11 @@ impl Equations {
         let inner = inner.get_or_insert_with(|| Solver::of(told - order));
         let image = &self.skeleton.recurrence().image;
         let mut map = inner.map(&self.matrix, told, order, image)?;
-        for i in 0..order {
-            for j in 0..order {
-                map[(i, j)] *= self.unit(j) / self.unit(i);
-            }
-        }
+        // Velocities count by the frequency.
+        let (half, velocity) = (order / 2, self.unit(order - 1));
+        let (mut by_positions, mut by_velocities) = map.columns_range_pair_mut(..half, half..);
+        by_positions.rows_mut(half, half).unscale_mut(velocity);
+        by_velocities.rows_mut(0, half).scale_mut(velocity);
         map.iter().all(|x| x.is_finite()).then_some(map)
     }
 
@@ -117,7 +129,9 @@ impl Equations {
         }
         let told = self.skeleton.told();
         let whole = &mut self.eliminated.whole;
-        let Solver { matrix, lu, column } = whole.get_or_insert_with(|| Solver::of(told + 1));
+        let Solver {
+            matrix, lu, column, ..
+        } = whole.get_or_insert_with(|| Solver::of(told + 1));
         for (row, entries) in self.matrix.chunks_exact(told + 1).enumerate() {
             matrix.row_mut(row).copy_from_slice(entries);
         }

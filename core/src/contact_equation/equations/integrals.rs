@@ -12,6 +12,11 @@
 //!
 //! Source: Davis and Rabinowitz (1984), Methods of Numerical Integration, chapter 2 (compound rules of Gauss type).
 
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the instruction set of its caller"
+)]
+
 use std::ops::Range;
 
 use multiversion::multiversion;
@@ -42,6 +47,8 @@ pub(super) struct Integrals {
     moves: bool,
     /// Kernels at the points of the rule.
     kernels: Found,
+    /// What the forces do to the states of a pair at the points of the rule.
+    at_points: [Vec<f64>; 2],
     /// Sums over nodes for the states of a pair.
     sums: [Vec<f64>; 4],
     row: Vec<f64>,
@@ -75,6 +82,7 @@ impl Integrals {
             by_time: vec![0.0; targets * order],
             moves: false,
             kernels: Found::default(),
+            at_points: [Vec::new(), Vec::new()],
             sums: std::array::from_fn(|_| vec![0.0; targets]),
             row: vec![0.0; order],
         }
@@ -208,7 +216,11 @@ impl Integrals {
     fn by_time(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
         let (n, targets, time) = (self.nodes, self.targets(), of.time);
         let rule = of.nodes.between(block.rate() * time.abs());
-        let loads = [0, 1].map(|i| &self.load[0][(2 * r + i) * n..][..n]);
+        for (i, to) in self.at_points.iter_mut().enumerate() {
+            to.resize(rule.left.len(), 0.0);
+            let load = &self.load[0][(2 * r + i) * n..][..n];
+            write_products(&rule.weighted, load, to);
+        }
         let (mut integral, mut slope) = ([0.0; 2], [0.0; 2]);
         let mut before = 0.0;
         for (way, &psi) in of.nodes.targets.iter().enumerate() {
@@ -219,7 +231,7 @@ impl Integrals {
             slope = times(e, [0, 1].map(|i| slope[i] + step * driven[i]));
             integral = times(e, integral);
             for place in rule.points(way) {
-                let sum = two_products(&rule.weighted[place * n..][..n], loads);
+                let sum = [self.at_points[0][place], self.at_points[1][place]];
                 let left = rule.left[place] * time;
                 let carried = block.carried(self.kernels.kernel(place), sum);
                 let driven = times(block.matrix, carried);
@@ -301,17 +313,47 @@ fn add_moving(
     }
 }
 
-/// Adds kernels times weighted polynomials.
+/// Adds kernels times weighted polynomials, of some nodes at a time, whose sums are in registers. Nodes are a multiple of four.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn add_kernels([c, k]: [&[f64]; 2], time: f64, weighted: &[f64], [once, twice]: [&mut [f64]; 2]) {
-    let rows = weighted.chunks_exact(once.len());
-    for ((c, k), weighted) in c.iter().zip(k).zip(rows) {
+fn add_kernels(kernels: [&[f64]; 2], time: f64, weighted: &[f64], [once, twice]: [&mut [f64]; 2]) {
+    let nodes = once.len();
+    let mut first = 0;
+    while first < nodes {
+        let tables = [&mut once[first..], &mut twice[first..]];
+        first += match nodes - first {
+            16.. => add_some::<16>(kernels, time, weighted, nodes, first, tables),
+            8.. => add_some::<8>(kernels, time, weighted, nodes, first, tables),
+            _ => add_some::<4>(kernels, time, weighted, nodes, first, tables),
+        };
+    }
+}
+
+/// The same of so many nodes from one on. Says how many they are.
+#[inline(always)]
+fn add_some<const N: usize>(
+    [c, k]: [&[f64]; 2],
+    time: f64,
+    weighted: &[f64],
+    nodes: usize,
+    first: usize,
+    [once, twice]: [&mut [f64]; 2],
+) -> usize {
+    let tables = (once.first_chunk_mut::<N>(), twice.first_chunk_mut::<N>());
+    let (Some(once), Some(twice)) = tables else {
+        return N;
+    };
+    let (mut a, mut b) = (*once, *twice);
+    for ((c, k), row) in c.iter().zip(k).zip(weighted.chunks_exact(nodes)) {
         let [c, k] = [c * time, k * time];
-        for ((once, twice), weighted) in once.iter_mut().zip(&mut *twice).zip(weighted) {
-            *once += c * weighted;
-            *twice += k * weighted;
+        if let Some(weights) = row[first..].first_chunk::<N>() {
+            for l in 0..N {
+                a[l] += c * weights[l];
+                b[l] += k * weights[l];
+            }
         }
     }
+    (*once, *twice) = (a, b);
+    N
 }
 
 /// Products of the rows of both tables with both loads: of the first one, then of the second. Nodes are a multiple of four.
@@ -342,16 +384,17 @@ fn products(tables: [&[f64]; 2], loads: [&[f64]; 2], sums: [&mut [f64]; 4]) {
     }
 }
 
-/// Products of a row with both loads. Nodes are a multiple of four.
-fn two_products(row: &[f64], loads: [&[f64]; 2]) -> [f64; 2] {
-    loads.map(|load| {
-        let pairs = row.as_chunks::<4>().0.iter().zip(load.as_chunks::<4>().0);
-        let mut lanes = [0.0; 4];
-        for (a, b) in pairs {
+/// Writes the products of rows with a load, row by row. Nodes are a multiple of four.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn write_products(rows: &[f64], load: &[f64], to: &mut [f64]) {
+    let groups = load.as_chunks::<4>().0;
+    for (row, to) in rows.chunks_exact(load.len()).zip(to) {
+        let mut sums = [0.0; 4];
+        for (row, load) in row.as_chunks::<4>().0.iter().zip(groups) {
             for l in 0..4 {
-                lanes[l] += a[l] * b[l];
+                sums[l] += row[l] * load[l];
             }
         }
-        (lanes[0] + lanes[2]) + (lanes[1] + lanes[3])
-    })
+        *to = (sums[0] + sums[2]) + (sums[1] + sums[3]);
+    }
 }

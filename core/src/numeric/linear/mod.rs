@@ -17,6 +17,7 @@ mod tests;
 mod wide;
 
 use eliminate::{eliminate, substitute, substitute_groups};
+pub(crate) use products::inlined_dot;
 pub use products::{dot, times_columns, weighted_dot};
 pub(crate) use wide::{Placed, add_product};
 

@@ -11,6 +11,12 @@ use super::{Group, LANES};
 /// Scalar product, summed in lanes.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    inlined_dot(a, b)
+}
+
+/// The same for callers that are compiled for an instruction set.
+#[inline(always)]
+pub(crate) fn inlined_dot(a: &[f64], b: &[f64]) -> f64 {
     let ((a, a_rest), (b, b_rest)) = (a.as_chunks(), b.as_chunks());
     let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
     total(&add_products([0.0; LANES], a, b)) + rest

@@ -31,8 +31,7 @@ pub fn add_product(a: &[f64], b: &[f64], columns: usize, to: &mut [f64], room: &
         let (to_several, to_rest) = to.split_at_mut(several.len() / inner * columns);
         let rows = several.chunks_exact(ROWS * inner);
         for (rows, to) in rows.zip(to_several.chunks_exact_mut(ROWS * columns)) {
-            let mut sums = [[0.0; LANES]; ROWS];
-            several_rows(rows, room, &mut sums);
+            let sums = several_rows(rows, room);
             for (sum, to) in sums.iter().zip(to.chunks_exact_mut(columns)) {
                 add(sum, &mut to[first..][..width]);
             }
@@ -52,10 +51,11 @@ pub fn add_product(a: &[f64], b: &[f64], columns: usize, to: &mut [f64], room: &
 fn place(b: &[f64], columns: usize, first: usize, room: &mut Vec<Placed>) {
     room.clear();
     for (place, row) in b.chunks_exact(columns).enumerate() {
-        let mut group = [0.0; LANES];
-        for (to, x) in group.iter_mut().zip(&row[first..]) {
-            *to = *x;
-        }
+        let group = row[first..].first_chunk().copied().unwrap_or_else(|| {
+            let mut group = [0.0; LANES];
+            group[..columns - first].copy_from_slice(&row[first..]);
+            group
+        });
         if group != [0.0; LANES] {
             room.push((place, group));
         }
@@ -64,7 +64,7 @@ fn place(b: &[f64], columns: usize, first: usize, room: &mut Vec<Placed>) {
 
 /// Products of some rows at once.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn several_rows(a: &[f64], known: &[Placed], to: &mut [Group; ROWS]) {
+fn several_rows(a: &[f64], known: &[Placed]) -> [Group; ROWS] {
     let inner = a.len() / ROWS;
     let rows: [&[f64]; ROWS] = std::array::from_fn(|r| &a[r * inner..][..inner]);
     let mut sums = [[0.0; LANES]; ROWS];
@@ -74,7 +74,7 @@ fn several_rows(a: &[f64], known: &[Placed], to: &mut [Group; ROWS]) {
             sums[r] = plus(sums[r], factors[r], group);
         }
     }
-    *to = sums;
+    sums
 }
 
 #[inline(always)]
