@@ -147,6 +147,18 @@ impl Extreme {
     }
 }
 
+/// Each extreme with the same one of another orbit.
+pub(crate) fn pairs<'e>(
+    here: &'e [Extreme],
+    next: &'e [Extreme],
+) -> impl Iterator<Item = [&'e Extreme; 2]> {
+    here.iter().filter_map(move |extreme| {
+        let there = extreme.nearest(next)?;
+        // Each must be the nearest of the other.
+        (there.nearest(here) == Some(extreme)).then_some([extreme, there])
+    })
+}
+
 /// An extreme that has gone through its level from one orbit to the next: where it was, and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Passage {
@@ -167,16 +179,12 @@ impl Passage {
 
 /// The extremes that have gone through their levels from one orbit to the next.
 pub(crate) fn passed(before: &[Extreme], next: &[Extreme]) -> Vec<Passage> {
-    let through = |extreme: &Extreme| {
-        let there = extreme.nearest(next)?;
-        // Each must be the nearest of the other.
-        let same = there.nearest(before) == Some(extreme);
-        (same && (there.above < 0.0) != (extreme.above < 0.0)).then_some(Passage {
-            before: *extreme,
-            next: *there,
-        })
-    };
-    before.iter().filter_map(through).collect()
+    let through = pairs(before, next).filter(|[a, b]| (a.above < 0.0) != (b.above < 0.0));
+    let passages = through.map(|[before, next]| Passage {
+        before: *before,
+        next: *next,
+    });
+    passages.collect()
 }
 
 /// Whether an extreme near its level is there at one of two orbits and not at the other one: two of them have become one between both, or

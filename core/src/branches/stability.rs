@@ -34,7 +34,7 @@ pub enum Verdict {
     Stable,
     /// At least one multiplier is outside the unit circle, by more than its error.
     Unstable,
-    /// The error of the largest multiplier does not allow a verdict.
+    /// The error of the largest multiplier does not allow a verdict, or is so large a part of it that it is no more than a size.
     Undecided,
 }
 
@@ -50,6 +50,9 @@ impl std::fmt::Display for Verdict {
 
 /// Relative error that rounding alone may have left in a multiplier.
 const ROUNDING: f64 = 1e-12;
+/// What is estimated to be wrong by a larger part of the largest multiplier, or of one, may be wrong by more than that: estimates are the first terms of
+/// series, which tell an error where it is small.
+const KNOWN: f64 = 0.25;
 
 impl Stability {
     /// Nothing is known.
@@ -75,7 +78,9 @@ impl Stability {
         let largest = multipliers.first().map_or(f64::NAN, |m| m.norm());
         // No product of step matrices is known better than to some rounding errors.
         let error = error + ROUNDING * largest.max(1.0);
-        let verdict = if largest + error < 1.0 {
+        let verdict = if error > KNOWN * largest.max(1.0) {
+            Verdict::Undecided
+        } else if largest + error < 1.0 {
             Verdict::Stable
         } else if largest - error > 1.0 {
             Verdict::Unstable
@@ -101,6 +106,9 @@ mod tests {
         assert_eq!(Stability::of(at(0.9), 0.01).verdict, Verdict::Stable);
         assert_eq!(Stability::of(at(1.1), 0.01).verdict, Verdict::Unstable);
         assert_eq!(Stability::of(at(0.995), 0.01).verdict, Verdict::Undecided);
+        assert_eq!(Stability::of(at(0.3), 0.3).verdict, Verdict::Undecided);
+        let wide = Stability::of(at(32.8), 22.0);
+        assert_eq!(wide.verdict, Verdict::Undecided);
         assert_eq!(Stability::of(Vec::new(), 0.0).verdict, Verdict::Undecided);
         assert_eq!(Stability::of(at(f64::NAN), 0.0).verdict, Verdict::Undecided);
     }

@@ -19,7 +19,7 @@
 use super::Engine;
 use super::grazing::Gaps;
 use super::seen::Seen;
-use crate::branches::extreme::Extreme;
+use crate::branches::extreme::{Extreme, pairs};
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Border, Newton};
@@ -210,19 +210,10 @@ fn turns(newton: &Newton, [here, next]: [&Gaps; 2]) -> bool {
     newton.norm().product(a.scale, &a.tangent, &b.tangent) < TURNED
 }
 
-/// Each extreme with the same one of another orbit.
-fn pairs<'g>(here: &'g Gaps, next: &'g Gaps) -> impl Iterator<Item = [&'g Extreme; 2]> {
-    here.extremes.iter().filter_map(|extreme| {
-        let there = extreme.nearest(&next.extremes)?;
-        // Each must be the nearest of the other.
-        (there.nearest(&here.extremes) == Some(extreme)).then_some([extreme, there])
-    })
-}
-
 /// The narrow places near the ways of all extremes from one orbit to another.
 fn places_between(problem: &mut dyn BranchProblem, before: &Gaps, next: &Gaps) -> Vec<NarrowPlace> {
     let mut places: Vec<NarrowPlace> = Vec::new();
-    for [extreme, there] in pairs(before, next) {
+    for [extreme, there] in pairs(&before.extremes, &next.extremes) {
         let ways = [extreme.gap(), there.gap()];
         let moved = (ways[1] - ways[0]).abs();
         let range = [ways[0].min(ways[1]) - moved, ways[0].max(ways[1]) + moved];
@@ -243,7 +234,7 @@ fn places_between(problem: &mut dyn BranchProblem, before: &Gaps, next: &Gaps) -
 /// The nearest gap of (1) on the way from one orbit to another, if any extreme passes its place too fast.
 fn next_target([here, next]: [&Gaps; 2], places: &[NarrowPlace]) -> Option<Target> {
     let mut nearest: Option<Target> = None;
-    for [extreme, there] in pairs(here, next) {
+    for [extreme, there] in pairs(&here.extremes, &next.extremes) {
         let (from, way) = (extreme.gap(), there.gap() - extreme.gap());
         let of_contact = places
             .iter()
@@ -274,7 +265,7 @@ fn next_target([here, next]: [&Gaps; 2], places: &[NarrowPlace]) -> Option<Targe
 fn middle([here, next]: [&Gaps; 2], places: &[NarrowPlace]) -> Option<Target> {
     let mut most = CLOSEST;
     let mut found = None;
-    for [extreme, there] in pairs(here, next) {
+    for [extreme, there] in pairs(&here.extremes, &next.extremes) {
         let of_contact = places
             .iter()
             .filter(|place| place.contact == extreme.contact);

@@ -70,7 +70,7 @@ impl Run<'_> {
     }
 
     /// Extremes over the whole period of the orbit of the last pass: where it comes back earlier, with their images.
-    fn of_period(&self) -> Vec<GapExtreme> {
+    pub(super) fn of_period(&self) -> Vec<GapExtreme> {
         let motion = Motion::of(&self.equations);
         let skeleton = &self.equations.skeleton;
         let found = motion.gap_extremes().concat();

@@ -88,9 +88,14 @@ impl Setting {
         values: &Values,
         contact: usize,
     ) -> Option<Scales> {
-        let is_narrow = self.are_narrow(values).get(contact) == Some(&true);
+        let is_narrow = self.is_narrow(values, contact);
         let law = values.contacts.get(contact).filter(|_| is_narrow)?.law;
         self.scales.get(law)?.clone()
+    }
+
+    /// Whether that of a contact may have some.
+    pub(in crate::contact_equation) fn is_narrow(&self, values: &Values, contact: usize) -> bool {
+        self.are_narrow(values).get(contact) == Some(&true)
     }
 
     fn are_narrow(&self, values: &Values) -> Cow<'_, [bool]> {

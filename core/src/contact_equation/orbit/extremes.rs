@@ -99,7 +99,9 @@ pub(super) fn extremes_of_gaps(motion: &Motion<'_>) -> Vec<Vec<GapExtreme>> {
     let contacts = motion.equations.values.contacts.iter().enumerate();
     let of = |(contact, of): (usize, &Contact)| {
         let mut found = Vec::new();
-        if !of.levels.is_empty() {
+        // Of others nothing is asked.
+        let values = &motion.equations.values;
+        if !of.levels.is_empty() || motion.equations.setting.is_narrow(values, contact) {
             let mut end = None;
             for sampled in sampled {
                 let signal = Signal::new(motion, sampled, Of::Gap(contact));

@@ -1,0 +1,95 @@
+//! Steps in which an extreme of a gap passes a narrow place of its law.
+//!
+//! While an extreme goes through a place of the width `w` where a law without levels changes, the branch may turn twice and its orbits lose and regain
+//! stability (see [`narrow`](crate::branches::engine)). A step from one side of the place to the other shows none of it. An extreme that is at `s_0` and
+//! `s_1` before and behind a step, in widths from the place, goes through
+//!
+//! ```text
+//! min(max(s_0, s_1), 2) - max(min(s_0, s_1), -2)                                                               (1)
+//! ```
+//!
+//! widths of it. A step in which that is more than it may be is made again, shorter, so that there are points in the place, with nodes that fit them.
+//!
+//! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2: at a touch the distance of the extreme,
+//! not the parameter, tells the orbits apart.
+
+use std::f64::consts::TAU;
+
+use super::method::ContactBranch;
+use crate::branches::extreme::{Extreme, pairs};
+use crate::contact_equation::run::Run;
+use crate::continuation::follow::CurvePoint;
+use crate::laws::generic::narrow::Narrow;
+
+/// Widths on each side of a place that belong to it.
+const BESIDE: f64 = 2.0;
+/// Widths (1) that a step may go through, of the four.
+const SEEN: f64 = 1.5;
+/// A step is made shorter so often for a narrow place at most: one of a thousandth of it is come to so.
+pub(super) const NARROWED: usize = 12;
+
+impl ContactBranch<'_, '_> {
+    /// Whether an extreme goes through more of a narrow place than a step may, on the way from the last orbit that was kept to one whose equations are
+    /// computed. Keeps its extremes, for when it is kept.
+    pub(super) fn leaps_over_narrow(&mut self, at: &CurvePoint) -> bool {
+        if !self.run.may_be_narrow() {
+            return false;
+        }
+        self.narrow_next = self.run.plain_extremes();
+        if self.narrow.is_empty() && !self.kept.is_empty() {
+            // A branch that goes on from a file knows its last orbit alone.
+            let kept = std::mem::take(&mut self.kept);
+            self.run.equations.compute(&kept, false);
+            self.narrow = self.run.plain_extremes();
+            self.kept = kept;
+            let stability = self.run.problem.asked.stability;
+            self.run.equations.compute(&at.u, stability);
+        }
+        let run = &*self.run;
+        pairs(&self.narrow, &self.narrow_next).any(|[before, next]| run.leaps(before, next))
+    }
+}
+
+impl Run<'_> {
+    /// Whether any law may have narrow places.
+    fn may_be_narrow(&self) -> bool {
+        let values = &self.equations.values;
+        let mut contacts = 0..values.contacts.len();
+        contacts.any(|contact| self.equations.setting.is_narrow(values, contact))
+    }
+
+    /// The extremes of gaps over the period, as they are; none where they are not known.
+    fn plain_extremes(&self) -> Vec<Extreme> {
+        if self.equations.failed || !self.equations.is_in_order() {
+            return Vec::new();
+        }
+        let whole = TAU * self.equations.skeleton.recurrence().period as f64;
+        let found = self.of_period();
+        let plain = found.iter().map(|extreme| Extreme {
+            tau: TAU * extreme.phase.rem_euclid(whole) / whole,
+            maximum: extreme.maximum,
+            above: extreme.gap,
+            plain: true,
+            ..Extreme::of(extreme.contact, 0, 1.0, false)
+        });
+        plain.collect()
+    }
+
+    fn leaps(&self, before: &Extreme, next: &Extreme) -> bool {
+        let (values, contact) = (&self.equations.values, before.contact);
+        let Some(mut scales) = self.equations.setting.sharp(values, contact) else {
+            return false;
+        };
+        let [from, to] = [before, next].map(Extreme::gap);
+        let (low, high) = (from.min(to), from.max(to));
+        let moved = high - low;
+        let of = &values.contacts[contact];
+        scales.set(&of.arguments, &of.levels);
+        let mut places: Vec<Narrow> = Vec::new();
+        scales.narrow([low - moved, high + moved], &mut places);
+        places.iter().any(|place| {
+            let [low, high] = [low, high].map(|gap| (gap - place.at) / place.width);
+            high.min(BESIDE) - low.max(-BESIDE) > SEEN
+        })
+    }
+}
