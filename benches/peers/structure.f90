@@ -25,7 +25,7 @@ subroutine func(ndim, u, icp, par, ijac, f, dfdu, dfdp)
   integer, intent(in) :: ndim, icp(*), ijac
   double precision, intent(in) :: u(ndim), par(*)
   double precision, intent(out) :: f(ndim)
-  double precision, intent(inout) :: dfdu(ndim, ndim), dfdp(ndim, *)
+  double precision, intent(in out) :: dfdu(ndim, ndim), dfdp(ndim, *)
   double precision :: s, c, w, g, bend, force, slope
   integer :: i
   call read_once()
@@ -64,7 +64,7 @@ subroutine stpnt(ndim, u, par, t)
   use structures
   implicit none
   integer, intent(in) :: ndim
-  double precision, intent(inout) :: u(ndim), par(*)
+  double precision, intent(in out) :: u(ndim), par(*)
   double precision, intent(in) :: t
   double precision, parameter :: turn = 6.283185307179586477d0
   double precision :: start
