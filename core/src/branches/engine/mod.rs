@@ -107,7 +107,9 @@ struct Engine {
     /// The last points with the extremes of their gaps.
     gaps: Vec<Gaps>,
     /// The last point with the extremes of the gaps whose laws may have narrow places.
-    plain: Option<Gaps>,
+    plain: Vec<Gaps>,
+    /// How often the step to the next point was made again, shorter, since an extreme had passed a narrow place of its law.
+    narrowed: usize,
     /// Where levels are touched in the last step.
     touched: Vec<f64>,
     /// The last of them, if its level is crossed at the end of that step.
@@ -257,7 +259,8 @@ impl Engine {
             joint: None,
             end: None,
             gaps: Vec::new(),
-            plain: None,
+            plain: Vec::new(),
+            narrowed: 0,
             touched: Vec::new(),
             crossed: None,
             bent: Vec::new(),
@@ -283,7 +286,11 @@ impl Engine {
                 }
                 Continue::Continue(())
             }
-            Visit::Point(at) if self.corner_before(problem, at) || self.leaps(problem, at) => {
+            Visit::Point(at)
+                if self.corner_before(problem, at)
+                    || self.leaps(problem, at)
+                    || self.leaps_over_narrow(problem, at) =>
+            {
                 Continue::Break(Halt::Resize)
             }
             Visit::Point(at) | Visit::Again(at) => {

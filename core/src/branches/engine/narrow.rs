@@ -36,6 +36,10 @@ const REACHED: f64 = 0.25;
 const CORRECTIONS: usize = 8;
 /// So many orbits, at most.
 const ORBITS: usize = 30;
+/// Points whose extremes are remembered: those of the last step, and the next one.
+const READ: usize = 3;
+/// A step is made shorter so often for a narrow place at most: one of a thousandth of it is come to so.
+const NARROWED: usize = 12;
 /// Along the tangent by less than this part of the step.
 const SHORT: f64 = 0.5;
 /// Between orbits whose tangents have a product below this another one is computed, unless the extreme moves by less than this part of
@@ -63,6 +67,33 @@ struct NarrowPlace {
 }
 
 impl Engine {
+    /// Whether the step to a point that is not kept yet goes through more of a narrow place than it may. Then the walk is to go back: what happens in the
+    /// place is seen where there are points in it, and orbits of (1) may be out of reach from outside of it.
+    pub(super) fn leaps_over_narrow(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        next: &CurvePoint,
+    ) -> bool {
+        let last = self.seen.last().map(|seen| seen.point.clone());
+        let Some(before) = last.filter(|last| last.u.len() == next.u.len()) else {
+            return false;
+        };
+        let ends = [&before, next].map(|point| self.plain_at(problem, point));
+        let [Some(here), Some(there)] = ends else {
+            return false;
+        };
+        let places = places_between(problem, &here, &there);
+        let leapt = pairs(&here.extremes, &there.extremes).any(|[extreme, end]| {
+            let mut of_contact = places
+                .iter()
+                .filter(|place| place.contact == extreme.contact);
+            of_contact.any(|place| place.narrow.is_leapt_over([extreme.gap(), end.gap()]))
+        });
+        let leaps = leapt && self.narrowed < NARROWED && self.go_back(problem, next);
+        self.narrowed = if leaps { self.narrowed + 1 } else { 0 };
+        leaps
+    }
+
     /// The step between two points, divided at the orbits at which extremes are in narrow places of their laws.
     pub(super) fn through_narrow(
         &mut self,
@@ -97,14 +128,18 @@ impl Engine {
 
     /// The extremes at a point as they are, which are read once.
     fn plain_at(&mut self, problem: &mut dyn BranchProblem, point: &CurvePoint) -> Option<Gaps> {
-        let known = self.plain.take().filter(|gaps| gaps.point == *point);
-        let gaps = known.or_else(|| {
-            let mut extremes = Vec::new();
-            let point = point.clone();
-            let known = problem.plain_extremes(&point.u, &mut extremes);
-            known.then_some(Gaps { point, extremes })
-        })?;
-        self.plain = Some(gaps.clone());
+        let mut known = self.plain.iter();
+        if let Some(known) = known.find(|gaps| gaps.point == *point) {
+            return Some(known.clone());
+        }
+        let mut extremes = Vec::new();
+        let point = point.clone();
+        let known = problem.plain_extremes(&point.u, &mut extremes);
+        let gaps = known.then_some(Gaps { point, extremes })?;
+        if self.plain.len() == READ {
+            self.plain.remove(0);
+        }
+        self.plain.push(gaps.clone());
         Some(gaps)
     }
 

@@ -1,14 +1,8 @@
 //! Steps in which an extreme of a gap passes a narrow place of its law.
 //!
 //! While an extreme goes through a place of the width `w` where a law without levels changes, the branch may turn twice and its orbits lose and regain
-//! stability (see [`narrow`](crate::branches::engine)). A step from one side of the place to the other shows none of it. An extreme that is at `s_0` and
-//! `s_1` before and behind a step, in widths from the place, goes through
-//!
-//! ```text
-//! min(max(s_0, s_1), 2) - max(min(s_0, s_1), -2)                                                               (1)
-//! ```
-//!
-//! widths of it. A step in which that is more than it may be is made again, shorter, so that there are points in the place, with nodes that fit them.
+//! stability (see [`narrow`](crate::branches::engine)). A step that [goes through](Narrow::is_leapt_over) more of it than it may is made again, shorter, so
+//! that there are points in the place, with nodes that fit them.
 //!
 //! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2: at a touch the distance of the extreme,
 //! not the parameter, tells the orbits apart.
@@ -21,10 +15,6 @@ use crate::contact_equation::run::Run;
 use crate::continuation::follow::CurvePoint;
 use crate::laws::generic::narrow::Narrow;
 
-/// Widths on each side of a place that belong to it.
-const BESIDE: f64 = 2.0;
-/// Widths (1) that a step may go through, of the four.
-const SEEN: f64 = 1.5;
 /// A step is made shorter so often for a narrow place at most: one of a thousandth of it is come to so.
 pub(super) const NARROWED: usize = 12;
 
@@ -80,16 +70,13 @@ impl Run<'_> {
         let Some(mut scales) = self.equations.setting.sharp(values, contact) else {
             return false;
         };
-        let [from, to] = [before, next].map(Extreme::gap);
-        let (low, high) = (from.min(to), from.max(to));
+        let ways = [before, next].map(Extreme::gap);
+        let (low, high) = (ways[0].min(ways[1]), ways[0].max(ways[1]));
         let moved = high - low;
         let of = &values.contacts[contact];
         scales.set(&of.arguments, &of.levels);
         let mut places: Vec<Narrow> = Vec::new();
         scales.narrow([low - moved, high + moved], &mut places);
-        places.iter().any(|place| {
-            let [low, high] = [low, high].map(|gap| (gap - place.at) / place.width);
-            high.min(BESIDE) - low.max(-BESIDE) > SEEN
-        })
+        places.iter().any(|place| place.is_leapt_over(ways))
     }
 }

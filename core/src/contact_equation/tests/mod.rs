@@ -9,6 +9,7 @@ mod kinks;
 mod minimal_period;
 mod modes;
 mod moving_stiffness;
+mod narrow;
 mod order;
 mod outputs;
 mod ringing;

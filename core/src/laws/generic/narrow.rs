@@ -32,6 +32,23 @@ pub(crate) struct Narrow {
     pub(crate) width: f64,
 }
 
+/// Widths on each side of a place that belong to it, and those that a step of a branch may go through, of both together.
+const BESIDE: f64 = 2.0;
+const STEP: f64 = 1.5;
+
+impl Narrow {
+    /// Whether a step of a branch in which an extreme of the gap moves from one value to another goes through more of the place than it may. In widths
+    /// from the place, at `s_0` before it and `s_1` behind it, it goes through
+    ///
+    /// ```text
+    /// min(max(s_0, s_1), 2) - max(min(s_0, s_1), -2)
+    /// ```
+    pub(crate) fn is_leapt_over(&self, [from, to]: [f64; 2]) -> bool {
+        let [a, b] = [from, to].map(|gap| (gap - self.at) / self.width);
+        a.max(b).min(BESIDE) - a.min(b).max(-BESIDE) > STEP
+    }
+}
+
 /// A way on one piece, and how it is looked at.
 #[derive(Clone, Copy)]
 pub(crate) struct Way<'w> {
@@ -309,5 +326,19 @@ mod tests {
     #[test]
     fn places_that_are_wide_along_a_motion_are_none() {
         assert_eq!(along_circle(0, 1e-4), []);
+    }
+
+    #[test]
+    fn steps_are_told_by_the_widths_that_they_go_through() {
+        let place = Narrow {
+            at: 1.0,
+            width: 0.1,
+        };
+        let leapt = |from, to| place.is_leapt_over([from, to]);
+        assert!(leapt(-5.0, 5.0) && leapt(5.0, -5.0));
+        assert!(leapt(0.85, 1.05) && leapt(1.05, 0.85));
+        // Up to the place, within it, and far from it.
+        assert!(!leapt(-5.0, 0.94) && !leapt(0.95, 1.09) && !leapt(1.2, 7.0));
+        assert!(!leapt(f64::NAN, 1.0));
     }
 }
