@@ -5,7 +5,6 @@ use nalgebra::{Complex, DMatrix};
 use super::closed_states::pass_first;
 use super::events;
 use super::first_orbit::FirstOrbit;
-use super::narrow_places::NARROWED;
 use super::resume_state::Rest;
 use crate::branches::branch_start::step_on_other_branch;
 use crate::branches::checkpoint::keep;
@@ -83,7 +82,7 @@ pub(in crate::contact_equation) struct ContactBranch<'b, 'r> {
     /// The same, since the last orbit that was kept had no place in its equations.
     pub(super) displaced: usize,
     /// The same, since an extreme had passed a narrow place of its law.
-    narrowed: usize,
+    pub(super) narrowed: usize,
     /// The extremes of the last orbit that was kept, and of the one after it, where laws may have narrow places.
     pub(super) narrow: Vec<Extreme>,
     pub(super) narrow_next: Vec<Extreme>,
@@ -377,13 +376,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         if read.overlooks.is_some() {
             return self.shorter_or_lost();
         }
-        if !stuck && self.narrowed < NARROWED && self.leaps_over_narrow(at) {
-            self.narrowed += 1;
-            self.refused = 0;
+        if !stuck && self.comes_nearer_to_narrow(at) {
             return Read::TooFar;
         }
-        self.narrowed = 0;
-        std::mem::swap(&mut self.narrow, &mut self.narrow_next);
         self.refused = 0;
         self.shortened = 0;
         self.displaced = 0;

@@ -16,12 +16,24 @@ use crate::continuation::follow::CurvePoint;
 use crate::laws::generic::narrow::Narrow;
 
 /// A step is made shorter so often for a narrow place at most: one of a thousandth of it is come to so.
-pub(super) const NARROWED: usize = 12;
+const NARROWED: usize = 12;
 
 impl ContactBranch<'_, '_> {
-    /// Whether an extreme goes through more of a narrow place than a step may, on the way from the last orbit that was kept to one whose equations are
-    /// computed. Keeps its extremes, for when it is kept.
-    pub(super) fn leaps_over_narrow(&mut self, at: &CurvePoint) -> bool {
+    /// Whether the step to an orbit whose equations are computed is to be made again, shorter, since an extreme goes through more of a narrow place than it
+    /// may. If not, its extremes are those of the last orbit that was kept.
+    pub(super) fn comes_nearer_to_narrow(&mut self, at: &CurvePoint) -> bool {
+        if self.narrowed < NARROWED && self.leaps_over_narrow(at) {
+            self.narrowed += 1;
+            self.refused = 0;
+            return true;
+        }
+        self.narrowed = 0;
+        std::mem::swap(&mut self.narrow, &mut self.narrow_next);
+        false
+    }
+
+    /// Whether it does, on the way from the last orbit that was kept.
+    fn leaps_over_narrow(&mut self, at: &CurvePoint) -> bool {
         if !self.run.may_be_narrow() {
             return false;
         }
