@@ -23,6 +23,7 @@ cases=()
 for modes in 2 20 200 2000; do
     for law in bar bar-hertz cantilever cantilever-hertz; do cases+=("$law $modes"); done
 done
+cases+=('bar-reduced 200' 'bar-reduced 2000' 'bar-hertz-reduced 200' 'cantilever-reduced 200')
 cases+=('chain-one 16' 'rotor 0' 'rotor-modes 25' 'chain 64')
 if python3 "$here/../../examples/structures/plate.py" 400 125 "$folder/solid"; then
     cases+=("file $folder/solid/plate.toml:700:1400" "file $folder/solid/plate.toml:700:1400:16")

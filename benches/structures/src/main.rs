@@ -2,6 +2,7 @@
 //!
 //! ```sh
 //! hertzian-structure-times bar 20 with 60       # 20 modes, with verdicts, ends after the first point beyond 60 s
+//! hertzian-structure-times bar-reduced 2000 without 60    # the bar of so many modes, by the vectors that a reduction keeps by itself
 //! hertzian-structure-times file plate.toml:700:1400 without 60
 //! ```
 //!

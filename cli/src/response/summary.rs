@@ -288,7 +288,7 @@ fn stability(text: &mut String, branch: &Branch) -> fmt::Result {
     if count > 0 {
         writeln!(
             text,
-            "undecided  at {count} of the points: a multiplier is nearer to 1 in size than its error"
+            "undecided  at {count} of the points: a multiplier is nearer to 1 in size than its error, or a quarter of it is not known"
         )?;
     }
     Ok(())

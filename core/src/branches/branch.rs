@@ -55,7 +55,7 @@ pub struct Branch {
     pub varied: String,
     /// The orbits.
     pub points: Vec<Point>,
-    /// Special orbits, in the order of the branch. Several behind the same point keep the order in which they were found if the branch turns there.
+    /// Special orbits, in the order of the branch. Several behind the same point keep the order in which they were found if the branch may turn there.
     pub events: Vec<Event>,
     /// Turns that are not folds, and other events that could not be located.
     pub turns: Vec<Turn>,

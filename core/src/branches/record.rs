@@ -32,20 +32,24 @@ pub(crate) struct Kept<'k> {
 struct Mark {
     after: usize,
     value: f64,
+    /// Whether the branch may turn there.
+    turns: bool,
 }
 
-/// The order along a branch, with these values at its points, of what is at these places. What is behind the same point is in the order of values where all of it is between that point
-/// and the next one; else, as where the branch turns between them, it stays as it was found.
-fn order_along(points: &[f64], marks: &[Mark]) -> Vec<usize> {
+/// The order along a branch, with these values at its points, of what is at these places, beside others. What is behind the same point is in the order of values where all of it is between that point
+/// and the next one, and the branch turns at none of it; else it stays as it was found.
+fn order_along(points: &[f64], marks: &[Mark], others: &[Mark]) -> Vec<usize> {
     let way = |mark: &Mark| {
         let (from, to) = (
             points.get(mark.after.checked_sub(1)?)?,
             points.get(mark.after)?,
         );
         let inside = |other: &&Mark| (other.value - from) * (other.value - to) <= 0.0;
-        let mut same = marks.iter().filter(|other| other.after == mark.after);
-        same.all(|other| inside(&other))
-            .then(|| (mark.value - from).abs())
+        let here = |other: &&Mark| other.after == mark.after;
+        let mut all = marks.iter().chain(others).filter(here);
+        let turns = all.any(|other| other.turns);
+        let mut same = marks.iter().filter(here);
+        (!turns && same.all(|other| inside(&other))).then(|| (mark.value - from).abs())
     };
     let ways: Vec<f64> = marks.iter().map(|mark| way(mark).unwrap_or(0.0)).collect();
     let mut order: Vec<usize> = (0..marks.len()).collect();
@@ -71,20 +75,31 @@ pub(crate) struct Rearranged {
     pub(crate) turns: Vec<usize>,
 }
 
+/// Whether the branch may turn at an event: two folds between two points may have values between both.
+fn may_turn(kind: EventKind) -> bool {
+    matches!(
+        kind,
+        EventKind::Fold | EventKind::BranchPoint | EventKind::Grazing { turns: true }
+    )
+}
+
 /// Brings what happened in the order of the branch: what a step hid is found one step later, and what a step shows is found kind by kind.
 pub(crate) fn sort(points: &[Point], events: &mut Vec<Event>, turns: &mut Vec<Turn>) -> Rearranged {
     let values: Vec<f64> = points.iter().map(|point| point.value).collect();
     let of_events = events.iter().map(|event| Mark {
         after: event.after,
         value: event.point.value,
+        turns: may_turn(event.kind),
     });
     let of_turns = turns.iter().map(|turn| Mark {
         after: turn.after,
         value: turn.value,
+        turns: may_turn(turn.kind),
     });
+    let (of_events, of_turns): (Vec<Mark>, Vec<Mark>) = (of_events.collect(), of_turns.collect());
     let order = Rearranged {
-        events: order_along(&values, &of_events.collect::<Vec<Mark>>()),
-        turns: order_along(&values, &of_turns.collect::<Vec<Mark>>()),
+        events: order_along(&values, &of_events, &of_turns),
+        turns: order_along(&values, &of_turns, &of_events),
     };
     *events = arranged(std::mem::take(events), &order.events);
     *turns = arranged(std::mem::take(turns), &order.turns);
@@ -218,29 +233,39 @@ fn taken<T: Clone>(places: &[usize], from: &[T]) -> Option<Vec<T>> {
 mod tests {
     use super::{Mark, order_along};
 
-    fn marks(of: &[[f64; 2]]) -> Vec<Mark> {
-        of.iter()
-            .map(|&[after, value]| Mark {
-                after: after as usize,
-                value,
-            })
-            .collect()
+    fn mark(after: usize, value: f64) -> Mark {
+        Mark {
+            after,
+            value,
+            turns: false,
+        }
     }
 
     #[test]
     fn what_is_behind_one_point_is_in_the_order_of_the_branch() {
-        let found = marks(&[[2.0, 1.7], [1.0, 0.5], [2.0, 1.2]]);
-        assert_eq!(order_along(&[0.0, 1.0, 2.0], &found), [1, 2, 0]);
-        let found = marks(&[[1.0, 1.2], [1.0, 1.7]]);
-        assert_eq!(order_along(&[2.0, 1.0], &found), [1, 0]);
+        let found = [mark(2, 1.7), mark(1, 0.5), mark(2, 1.2)];
+        assert_eq!(order_along(&[0.0, 1.0, 2.0], &found, &[]), [1, 2, 0]);
+        let found = [mark(1, 1.2), mark(1, 1.7)];
+        assert_eq!(order_along(&[2.0, 1.0], &found, &[]), [1, 0]);
     }
 
+    /// An S between two points has the values of its folds between theirs, the later one first.
     #[test]
     fn what_is_beside_a_fold_or_the_end_stays_as_it_was_found() {
-        let beyond = marks(&[[1.0, 2.1], [1.0, 1.5]]);
-        assert_eq!(order_along(&[1.0, 2.0], &beyond), [0, 1]);
-        let behind = marks(&[[2.0, 2.0], [2.0, 1.5], [0.0, 1.0]]);
-        assert_eq!(order_along(&[1.0, 2.0], &behind), [2, 0, 1]);
-        assert_eq!(order_along(&[], &[]), [0; 0]);
+        let fold = |value| Mark {
+            turns: true,
+            ..mark(1, value)
+        };
+        assert_eq!(
+            order_along(&[0.0, 1.0], &[fold(0.7), fold(0.3)], &[]),
+            [0, 1]
+        );
+        let beside = [mark(1, 0.7), mark(1, 0.3)];
+        assert_eq!(order_along(&[0.0, 1.0], &beside, &[fold(0.5)]), [0, 1]);
+        let beyond = [mark(1, 2.1), mark(1, 1.5)];
+        assert_eq!(order_along(&[1.0, 2.0], &beyond, &[]), [0, 1]);
+        let behind = [mark(2, 2.0), mark(2, 1.5), mark(0, 1.0)];
+        assert_eq!(order_along(&[1.0, 2.0], &behind, &[]), [2, 0, 1]);
+        assert_eq!(order_along(&[], &[], &[]), [0; 0]);
     }
 }

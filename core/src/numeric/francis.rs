@@ -94,6 +94,9 @@ fn hessenberg(a: &mut [f64], n: usize, room: &mut [f64]) {
     }
 }
 
+/// Entries are divided by their size before they are multiplied where they are smaller.
+const SMALL: f64 = 1e-100;
+
 /// Makes a column the vector `v` of a reflection that leaves nothing of it but its first entry: `beta`, and what that is then. `None` where that is so
 /// already.
 #[inline(always)]
@@ -254,8 +257,16 @@ fn shifts(a: &[f64], n: usize, [low, high]: [usize; 2], idle: usize) -> [f64; 3]
 fn double_step(a: &mut [f64], n: usize, [low, high]: [usize; 2], [x, y, product]: [f64; 3]) {
     let at = |i: usize, j: usize| a[(low + j) * n + low + i];
     let (corner, below) = (at(0, 0), at(1, 0));
+    // Products of small entries are nothing; the column counts up to a factor.
+    let size = (x - corner).abs() + (y - corner).abs() + below.abs();
+    let unit = if size < SMALL && size > 0.0 {
+        size
+    } else {
+        1.0
+    };
+    let below = below / unit;
     let mut v = [
-        (x - corner) * (y - corner) - product + at(0, 1) * below,
+        (x - corner) * ((y - corner) / unit) - product / unit + at(0, 1) * below,
         below * (corner + at(1, 1) - x - y),
         below * at(2, 1),
     ];

@@ -91,6 +91,7 @@ impl Scan<'_> {
             x: from,
             value: self.last.unwrap_or_else(|| at(from).1),
         };
+        // A dip of the rate between two samples is at most as deep as it changes over the ones before, where it is a parabola.
         let mut change = f64::INFINITY;
         let mut part = 1.0;
         while part <= parts {

@@ -39,6 +39,8 @@ const HALVINGS: usize = 5;
 /// And so often where the extremes at its ends do not tell why levels are crossed more or less often: two touches may be that near to each
 /// other. Only the halves that do not tell it are halved again.
 const UNEXPLAINED: usize = 12;
+/// Orbits that part a step, at most.
+const PARTED: usize = 64;
 
 /// A step in which levels are touched.
 struct TouchSearch<'s> {
@@ -46,6 +48,8 @@ struct TouchSearch<'s> {
     options: NewtonOptions,
     range: f64,
     after: usize,
+    /// Orbits that parted it so far.
+    parted: usize,
     /// Where the branch turned back without a fold, until a touch explains that.
     turned: Option<Turn>,
     /// Where touches were found.
@@ -244,6 +248,7 @@ impl Engine {
             options: self.options.newton,
             range: (self.options.to - self.options.from).abs(),
             after,
+            parted: 0,
             turned: None,
             found: Vec::new(),
             orbits: Vec::new(),
@@ -389,6 +394,10 @@ impl TouchSearch<'_> {
         [before, next]: [&Gaps; 2],
         halved: usize,
     ) -> bool {
+        if self.parted == PARTED {
+            return false;
+        }
+        self.parted += 1;
         let part = Step {
             before: &before.point,
             next: &next.point,

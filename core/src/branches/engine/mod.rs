@@ -390,6 +390,7 @@ impl Engine {
             self.seen.remove(0);
         }
         self.falls = seen.falls;
+        self.narrowed = 0;
         self.seen.push(seen);
     }
 

@@ -4,7 +4,8 @@
 //! `w` (see [`narrow`](crate::laws::generic::narrow)). While an extreme of the gap comes to such a place and goes beyond it, the branch may
 //! turn twice and its orbits lose and regain stability, all while the extreme moves by a few widths. A step is as long as the branch before
 //! allowed, and neither its ends nor differences of three points know of the place. But the extreme does: along the branch it goes
-//! through the place steadily, even where the parameter turns back. So orbits whose extreme is at
+//! through the place steadily, even where the parameter turns back. So a step in which it [goes through](Narrow::is_leapt_over) more than a part of the place is made
+//! again, shorter, and orbits whose extreme is at
 //!
 //! ```text
 //! g(tau*) = place + j w,        j = -2, -1, 0, 1, 2                                                            (1)
@@ -23,6 +24,7 @@ use crate::branches::extreme::{Extreme, pairs};
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Border, Newton};
+use crate::continuation::problem::Norm;
 use crate::laws::generic::narrow::Narrow;
 use crate::numeric::linear::dot;
 use crate::numeric::roots::{Bracket, Place};
@@ -39,7 +41,9 @@ const ORBITS: usize = 30;
 /// Points whose extremes are remembered: those of the last step, and the next one.
 const READ: usize = 3;
 /// A step is made shorter so often for a narrow place at most: one of a thousandth of it is come to so.
-const NARROWED: usize = 12;
+pub(super) const NARROWED: usize = 12;
+/// No step that is shorter than this is made again.
+const SHORTEST: f64 = 1e-4;
 /// Along the tangent by less than this part of the step.
 const SHORT: f64 = 0.5;
 /// Between orbits whose tangents have a product below this another one is computed, unless the extreme moves by less than this part of
@@ -82,6 +86,7 @@ impl Engine {
         let [Some(here), Some(there)] = ends else {
             return false;
         };
+        let difference = step(&here, &there).difference();
         let places = places_between(problem, &here, &there);
         let leapt = pairs(&here.extremes, &there.extremes).any(|[extreme, end]| {
             let mut of_contact = places
@@ -89,8 +94,11 @@ impl Engine {
                 .filter(|place| place.contact == extreme.contact);
             of_contact.any(|place| place.narrow.is_leapt_over([extreme.gap(), end.gap()]))
         });
-        let leaps = leapt && self.narrowed < NARROWED && self.go_back(problem, next);
-        self.narrowed = if leaps { self.narrowed + 1 } else { 0 };
+        let leaps = leapt
+            && self.narrowed < NARROWED
+            && Norm::of(problem.equations()).length(before.scale, &difference) > SHORTEST
+            && self.go_back(problem, next);
+        self.narrowed += usize::from(leaps);
         leaps
     }
 

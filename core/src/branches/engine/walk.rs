@@ -6,6 +6,7 @@
 use super::Engine;
 use super::grazing::Bent;
 use super::joint::Joint;
+use super::narrow::NARROWED;
 use super::seen::{Former, Seen};
 use crate::branches::problem::Test;
 use crate::branches::record::Kept;
@@ -29,6 +30,9 @@ pub(crate) struct Walk {
     divided: Vec<(usize, Test)>,
     decided: Option<usize>,
     looked: Option<Looked>,
+    /// How often the step to the next point was made again for a narrow place.
+    #[cfg_attr(feature = "serde", serde(default))]
+    narrowed: usize,
     /// Where levels are touched in the step before.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     touched: Vec<f64>,
@@ -106,6 +110,7 @@ impl Walk {
         are_points
             && before.iter().all(is_vector)
             && self.looked.iter().all(|looked| is_vector(&looked.at))
+            && self.narrowed <= NARROWED
             && self.touched.iter().all(|value| value.is_finite())
             && self.bent.iter().all(Bent::is_possible)
             && self.joint.as_ref().is_none_or(Joint::is_possible)
@@ -142,6 +147,7 @@ impl Engine {
             divided: self.divided.clone(),
             decided: self.decided,
             looked: self.looked.clone(),
+            narrowed: self.narrowed,
             touched: self.touched.clone(),
             crossed: self.crossed.clone(),
             bent: self.bent.clone(),
@@ -160,6 +166,7 @@ impl Engine {
             divided: walk.divided,
             decided: walk.decided,
             looked: walk.looked,
+            narrowed: walk.narrowed,
             touched: walk.touched,
             crossed: walk.crossed,
             bent: walk.bent,

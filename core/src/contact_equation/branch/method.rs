@@ -27,6 +27,7 @@ use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{Problem, Scale};
 use crate::event::EventKind;
+use crate::laws::generic::narrow::Narrow;
 use crate::shooting::test_functions::{self, Tests};
 
 /// Brackets of an event are narrowed until rounding stops it, or this is reached.
@@ -81,11 +82,6 @@ pub(in crate::contact_equation) struct ContactBranch<'b, 'r> {
     pub(super) shortened: usize,
     /// The same, since the last orbit that was kept had no place in its equations.
     pub(super) displaced: usize,
-    /// The same, since an extreme had passed a narrow place of its law.
-    pub(super) narrowed: usize,
-    /// The extremes of the last orbit that was kept, and of the one after it, where laws may have narrow places.
-    pub(super) narrow: Vec<Extreme>,
-    pub(super) narrow_next: Vec<Extreme>,
     /// The last orbit that was kept, in the present unknowns; empty where it is not known in them.
     pub(in crate::contact_equation) kept: Vec<f64>,
     /// Points that are followed before fewer nodes are tried.
@@ -199,9 +195,6 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             refused: 0,
             shortened: 0,
             displaced: 0,
-            narrowed: 0,
-            narrow: Vec::new(),
-            narrow_next: Vec::new(),
             kept: Vec::new(),
             visit,
         }
@@ -375,9 +368,6 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         }
         if read.overlooks.is_some() {
             return self.shorter_or_lost();
-        }
-        if !stuck && self.comes_nearer_to_narrow(at) {
-            return Read::TooFar;
         }
         self.refused = 0;
         self.shortened = 0;
@@ -644,8 +634,17 @@ impl BranchProblem for ContactBranch<'_, '_> {
         self.run.extremes(u, extremes)
     }
 
+    fn plain_extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
+        self.run.plain_extremes(u, extremes)
+    }
+
+    fn narrow_places(&mut self, _: &[f64], contact: usize, range: [f64; 2], to: &mut Vec<Narrow>) {
+        self.run.narrow_places(contact, range, to);
+    }
+
     fn extreme_form(&mut self, u: &[f64], extreme: &Extreme, _: f64, form: &mut [f64]) -> bool {
-        self.run.extreme_form(u, extreme, form)
+        // No unknown tells how far an extreme is from a narrow place.
+        !extreme.plain && self.run.extreme_form(u, extreme, form)
     }
 
     fn lifted(&mut self, u: &[f64], extreme: &Extreme, height: f64) -> Option<Vec<f64>> {

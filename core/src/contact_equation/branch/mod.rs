@@ -1,7 +1,7 @@
 //! The contact equation as the engine of branches sees it ([`method`]): events located again with more nodes ([`events`]) and the tangents
 //! there ([`event_tangent`]), extremes of gaps and
 //! crossings that hardly are any ([`gap_extremes`], [`slowest_crossing`]), orbits whose switches have another order ([`switch_order`]),
-//! steps that leap over narrow places of laws ([`narrow_places`]), where the first orbit is in other equations ([`first_orbit`]), whether the walk has come back to it ([`closed_states`]), and what a branch goes on
+//! those in narrow places of laws ([`narrow_places`]), where the first orbit is in other equations ([`first_orbit`]), whether the walk has come back to it ([`closed_states`]), and what a branch goes on
 //! from ([`resume_state`]).
 
 mod closed_states;
