@@ -59,6 +59,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 const SAME_TOUCH: f64 = 100.0;
 /// What rounding leaves in the value of a touch.
 const TOUCHED: f64 = 4e-12;
+/// Where branches cross a multiplier is one; none is where all are farther from it than this and ten times their error.
+const FAR: f64 = 0.1;
 /// Of Newton's method with more nodes.
 const OPTIONS: NewtonOptions = NewtonOptions {
     tolerance: 1e-11,
@@ -113,6 +115,29 @@ pub(in crate::contact_equation) fn event(
     (event.error, event.test) = (again.error, again.test);
     event.tangent = event_tangent::of_states(&mut again.equations, &again.point, periods);
     Some(event)
+}
+
+/// Whether an orbit at which branches seem to cross has multipliers, of which none is near one: the determinant of the equations changes its sign where
+/// switches beside a touch change their order, too.
+pub(super) fn crosses_nothing(event: &Event) -> bool {
+    let stability = &event.point.stability;
+    let crosses = matches!(
+        event.kind,
+        EventKind::BranchPoint | EventKind::SymmetryBreaking
+    );
+    let apart = stability.multipliers.iter().map(|m| (m - 1.0).norm());
+    let nearest = apart.fold(f64::INFINITY, f64::min);
+    // What is stated has how far the nearest is, which ought to be nothing, in it.
+    let own = if stability.error < nearest {
+        stability.error
+    } else {
+        stability.error - nearest
+    };
+    // A rigid motion has its own, which are not among them.
+    crosses
+        && stability.rigid == 0
+        && !stability.multipliers.is_empty()
+        && nearest > FAR.max(10.0 * own)
 }
 
 /// An event of equations with more nodes.

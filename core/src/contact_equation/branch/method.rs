@@ -609,7 +609,9 @@ impl BranchProblem for ContactBranch<'_, '_> {
         if event.kind == EventKind::BranchPoint && self.run.breaks_symmetry(at) {
             event.kind = EventKind::SymmetryBreaking;
         }
-        if of_modulus && moduli::is_recorded(&self.run.record.events, &event) {
+        if of_modulus && moduli::is_recorded(&self.run.record.events, &event)
+            || events::crosses_nothing(&event)
+        {
             return ZeroOutcome::Nothing;
         }
         let meets = event.kind == EventKind::BranchPoint && self.run.joined.is_none();

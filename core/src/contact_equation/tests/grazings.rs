@@ -291,3 +291,38 @@ fn touches_that_are_near_to_each_other_are_told_apart() {
         );
     }
 }
+
+crate::oscillator! {
+    /// Three masses, one of them between two flanks that move, two joined by a spring of three lines.
+    Flanks(x, y, z) {
+        law flank(gap) {
+            gap > 0.9038030656617028 => 12.350517943356545*(gap - 0.9038030656617028)^1.5,
+            -0.9038030656617028 <= gap <= 0.9038030656617028 => 0,
+            gap < -0.9038030656617028 => -(3.1748465488184947*((-gap - 0.9038030656617028)^3.1211295498719087))
+        }
+        law spring(gap) {
+            gap > 0.8271100136934411 => 7.575097653870356*0.8271100136934411 + 6.707848251597633*(gap - 0.8271100136934411),
+            0 <= gap <= 0.8271100136934411 => 7.575097653870356*gap,
+            gap < 0 => 1.7045894800376322*gap
+        }
+        2.209338173721469*ddot(x) + 0.23891101919135743*dot(x) + 1.0085651539798755*x + 1.2097704435785714*(x - y)
+            + 0.04988341044687202*(dot(x) - dot(y)) + spring(x - y) = 0.3222036702815316*cos(omega*t);
+        0.6344573272564455*ddot(y) + 0.08481334429194187*dot(y) + 1.2097704435785714*(y - x) + 0.04988341044687202*(dot(y) - dot(x))
+            + 1.4730185158336617*(y - z) + 0.03139801812746711*(dot(y) - dot(z))
+            + flank(y + 0.446673305975302 - 0.43776925754225643*sin(1/2*omega*t)) - spring(x - y) = 0;
+        ddot(z) + 0.06217188410761927*dot(z) + 1.639711172172471*z + 1.4730185158336617*(z - y) + 0.03139801812746711*(dot(z) - dot(y)) = 0;
+    }
+}
+
+/// Both touches are there both ways, and nothing else: no multiplier is near one, and branches cross nowhere.
+#[test]
+fn no_branch_point_is_invented_beside_touches() {
+    let (low, high) = (0.358_763_381_522_035_6, 0.521_843_903_118_525_9);
+    for [from, to] in [[low, high], [high, low]] {
+        let request = FrequencyResponse::of(&Flanks {}).from(from).to(to);
+        let branch = request.by(ContactEquation::new()).run().unwrap();
+        let found = touches(&branch);
+        assert_eq!(found.len(), branch.events.len(), "{:?}", branch.events);
+        assert_eq!(found.len(), 2);
+    }
+}
