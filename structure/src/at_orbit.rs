@@ -105,11 +105,10 @@ impl<'s> AtOrbit<'s> {
         cancel: &Cancel,
     ) -> Result<Self, ReducedError> {
         reduced.is_of(structure)?;
-        // Its closed motion is looked for once, and not for each contact.
-        let completed = branch.complete(point)?;
-        let Forces { amplitudes, base } = Forces::of(reduced, structure, branch, &completed)?;
+        let Forces { amplitudes, base } = Forces::of(reduced, structure, branch, point)?;
         let of = |value: &Value| value.at(known(branch, point), point.omega());
         let speeds: Vec<f64> = structure.gyroscopic.iter().map(|g| of(&g.speed)).collect();
+        let completed = branch.complete(point)?;
         if completed.orbit.coordinates() != reduced.vectors() {
             return Err(ReducedError::Other);
         }

@@ -273,6 +273,12 @@ pub(crate) trait BranchProblem {
         false
     }
 
+    /// Whether orbits in a narrow place of a law are known as well as others. Of few harmonics there they are not, and what happens between them may be
+    /// theirs alone: they are not made points of the branch.
+    fn resolves_narrow(&self) -> bool {
+        true
+    }
+
     /// Adds the narrow places that the law of a contact has at a solution in a range of its gap.
     fn narrow_places(&mut self, u: &[f64], contact: usize, range: [f64; 2], to: &mut Vec<Narrow>) {
         let _ = (u, contact, range, to);

@@ -10,7 +10,7 @@
 //!
 //! with the stated error `e`, as a part of peak-to-peak `p` of what it is of, Newton's method is applied to `M(x_i) = x_(i+1)` with what is varied held, until an update is
 //! below a thousandth, as the first one is as a rule; `c = 0.1`, and less where an orbit has several segments, or comes back after a part of its period, since a motion over all of
-//! them adds up. An orbit with its series was closed before. Of an output (1) has no `p`, which is a length of states, and it is always applied. Where no error is stated
+//! them adds up. Of an output (1) has no `p`, which is a length of states, and it is always applied. Where no error is stated
 //! nothing is known that the motion should be closed to. Beside a fold it leads away: a state that is farther off than errors explain
 //! is not taken.
 //!

@@ -138,8 +138,7 @@ fn read<'p>(
     };
     let (reader, apart) = along(&mut equations, &u).map_err(failed)?;
     let mut closed = point.clone();
-    // One that has its series is closed as nearly as it can be.
-    if point.orbit.has_series() || closed::is_closed(problem, point, apart) {
+    if closed::is_closed(problem, point, apart) {
         return Ok((reader, closed));
     }
     let nearer = closed::states(problem, &mut equations, &u, point, apart).and_then(|states| {

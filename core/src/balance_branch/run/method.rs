@@ -172,6 +172,10 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         extreme::corners(self.run.context.system.as_ref())
     }
 
+    fn resolves_narrow(&self) -> bool {
+        false
+    }
+
     fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
         self.gaps().read(u, extremes);
         true

@@ -78,6 +78,9 @@ impl Engine {
         problem: &mut dyn BranchProblem,
         next: &CurvePoint,
     ) -> bool {
+        if !problem.resolves_narrow() {
+            return false;
+        }
         let last = self.seen.last().map(|seen| seen.point.clone());
         let Some(before) = last.filter(|last| last.u.len() == next.u.len()) else {
             return false;
