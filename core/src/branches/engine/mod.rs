@@ -106,7 +106,7 @@ struct Engine {
     end: Option<(CurvePoint, usize)>,
     /// The last points with the extremes of their gaps.
     gaps: Vec<Gaps>,
-    /// The last point with the extremes of the gaps whose laws may have narrow places.
+    /// The last points with the extremes of the gaps whose laws may have narrow places.
     plain: Vec<Gaps>,
     /// How often the step to the next point was made again, shorter, since an extreme had passed a narrow place of its law.
     narrowed: usize,
