@@ -19,7 +19,9 @@
 //! p - 4^j 2 w,    p + 4^j 2 w,    j = 0, 1, ..                                                                 (2)
 //! ```
 //!
-//! are followed by polynomials of one degree equally well: each is no longer than three times its distance from the singularities. Nothing
+//! are followed by polynomials of one degree equally well: each is no longer than three times its distance from the singularities. A place beside the way,
+//! behind a switch or where the period begins, has its singularities as near to the polynomials on it, so that it counts as well: the
+//! analytic motion of the way goes on there as the orbit does, but for what a switch changes. Nothing
 //! depends on (2) but the error, so that ends stay until the place has moved by a part of them. Where it has moved farther, nodes are apart
 //! by a part of that, and so is the place that the orbit by them has from where it should be: ends that are located anew, again and again,
 //! close in on it.
@@ -227,18 +229,16 @@ impl Between<'_> {
             let contact = &self.gaps.values.contacts[active.contact];
             scales.set(&contact.arguments, &contact.levels);
             let at = |part: f64| {
-                let part = if self.whole {
-                    part
-                } else {
-                    part.clamp(0.0, 1.0)
-                };
                 let [gap, rate] = self.gap(active.contact, part);
                 [contact.held(active.piece, gap), rate]
             };
+            // What comes back is beside itself.
+            let beside = if self.whole { -EDGE } else { FARTHEST };
+            let parts = (1.0 + 2.0 * beside) * self.samples() as f64;
             let way = Way {
                 at: &at,
-                range: [EDGE, 1.0 - EDGE],
-                parts: self.samples(),
+                range: [-beside, 1.0 + beside],
+                parts: parts.ceil() as usize,
                 widest: NARROW,
             };
             let mut own = Vec::new();

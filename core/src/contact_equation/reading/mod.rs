@@ -1,5 +1,5 @@
 //! What is read off an orbit, with its errors: one step from it to a solution with more nodes tells what the nodes leave out. How far two
-//! orbits are apart is measured in [`errors`], whether one comes back earlier than asked for in [`minimal_period`], whether nodes see narrow
+//! orbits are apart is measured in [`errors`], what the finer one leaves out itself in [`finer_rest`], whether one comes back earlier than asked for in [`minimal_period`], whether nodes see narrow
 //! places of a law in [`overlooked`].
 //!
 //! With the equations `F = 0` of more nodes and their Jacobian `J` in the plane across the tangent, at unknowns `u` that are interpolated, what
@@ -10,7 +10,8 @@
 //! e_k = 2 (t_k / t)^2 e,    k = 1 .. 31                                                                         (2)
 //! ```
 //!
-//! and what the slope of the branch makes of the change of what is varied. (2) is that of orbits behind it on the branch, with the last
+//! and what the slope of the branch makes of the change of what is varied. Of an output one of both times in (1) is what the finer solution may leave
+//! out itself, by [`finer_rest`], where that is more. (2) is that of orbits behind it on the branch, with the last
 //! coefficients `t` of the forces at the nodes, each times what a unit force does: an error is a product of what the forces and of what the
 //! rule of integration leaves out. Where (2) is more than the tolerance or says nothing, and after 31 orbits, (1) is asked for again. Neither
 //! is a bound.
@@ -19,6 +20,7 @@
 //! equations); Trefethen (2013), Approximation Theory and Approximation Practice, chapter 8 (what coefficients tell of the rest).
 
 pub(super) mod errors;
+mod finer_rest;
 pub(super) mod minimal_period;
 pub(super) mod overlooked;
 mod plain_outputs;
@@ -35,6 +37,7 @@ use super::orbit::extremes::extremes_of;
 use super::orbit::motion::{Motion, Within};
 use super::run::Run;
 use super::run::error_estimate::{SAFETY, SCREENED, Screened};
+use super::skeleton::Skeleton;
 use super::skeleton::interval::Interval;
 use super::skeleton::phases::Opening;
 use super::skeleton::placement::Told;
@@ -212,6 +215,7 @@ impl Run<'_> {
         let apart = self.apart(&finer, &point, other[other.len() - 1]);
         let apart = apart.max(self.other_extremes(&finer));
         let [everywhere, of_asked] = self.everywhere(&finer, point.value, apart);
+        let distance = self.apart_with_rest(&finer, point.value, apart, of_asked);
         self.finer = Some(finer);
         let moves = apart > 0.0 || self.accuracy().peak_to_peak(&point.observed) > 0.0;
         let noise = if moves { self.noise(&point) } else { 0.0 };
@@ -222,14 +226,14 @@ impl Run<'_> {
         let steepness = self.steepness(at, &point, of_map);
         let steepness = steepness.unwrap_or(Steepness::of_peak_to_peak(self.rise(&point)));
         let [along, moved] = steepness.along(shift);
-        let error = part_of(SAFETY * (apart + along) + noise, size);
+        let error = part_of(distance.stated() + SAFETY * along + noise, size);
         point.error = Some(stated(error));
         let mut spread = 0.0;
         if let Some((map, found)) = map.as_ref().zip(found) {
             let moved = moved + self.grown() * parts as f64 * map.norm().max(1.0);
             (point.stability, spread) = stability(map, found, finer_map.as_ref(), parts, moved);
         }
-        let own = [SAFETY * apart + noise, SAFETY * moved];
+        let own = [distance.stated() + noise, SAFETY * moved];
         self.own_errors = steepness.own_errors(&point, size, own);
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
@@ -237,10 +241,10 @@ impl Run<'_> {
             switches: switches(&self.equations),
             narrowest: self.narrowest(&at.u),
             apart: everywhere,
-            of_asked,
+            of_asked: distance.most,
             shift: shift.abs(),
             slope: at.parameter_slope().abs(),
-            error: error.max(part_of(SAFETY * of_asked, size)),
+            error: error.max(part_of(SAFETY * distance.most, size)),
             spread: SAFETY * spread,
             most: [1.0, 1.0],
             left: SCREENED,
@@ -319,8 +323,10 @@ impl Run<'_> {
         self.equations.compute(&at.u, false);
         let point = self.observed(&self.equations, at.parameter());
         let apart = self.apart(finer, &point, value);
+        let [_, of_asked] = self.everywhere(finer, value, apart);
+        let distance = self.apart_with_rest(finer, value, apart, of_asked);
         let noise = self.noise(&point);
-        stated(part_of(SAFETY * apart + noise, self.size(&point, noise)))
+        stated(part_of(distance.stated() + noise, self.size(&point, noise)))
     }
 
     /// An orbit without its errors, and the map of its states if stability is asked for.
@@ -338,7 +344,12 @@ impl Run<'_> {
 
     /// What the forces at the nodes leave out on every interval, by the size of their last coefficients and of what a unit force does.
     fn tails(&self, u: &[f64]) -> Vec<f64> {
-        let intervals = self.equations.skeleton.intervals.iter();
+        self.tails_of(&self.equations.skeleton, u)
+    }
+
+    /// The same of other equations of these contacts.
+    fn tails_of(&self, skeleton: &Skeleton, u: &[f64]) -> Vec<f64> {
+        let intervals = skeleton.intervals.iter();
         let of = |interval: &Interval| {
             let nodes = interval.active.len() * interval.nodes.count();
             let first = interval.active.first().map_or(0, |active| active.first);

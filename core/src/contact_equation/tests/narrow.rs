@@ -1,6 +1,11 @@
 //! Places of laws that are far narrower than a motion, and what a branch does while an extreme passes them.
 
-use crate::{Branch, ContactEquation, EventKind, FrequencyResponse, HarmonicBalance, Shooting};
+use crate::{
+    Branch, ContactEquation, Event, EventKind, FrequencyResponse, HarmonicBalance, Shooting,
+};
+
+/// Stated errors are no bounds: of two hundred values one may be off by more times as much.
+const EXCEEDED: f64 = 3.0;
 
 crate::oscillator! {
     /// A force that is there within a thousandth of the motion alone.
@@ -18,7 +23,8 @@ fn events_in_a_narrow_place_are_found_both_ways_by_every_method() {
     let request = |from, to| FrequencyResponse::of(&system).from(from).to(to);
     let events = |branch: Branch| {
         let events = branch.events.iter();
-        let mut events: Vec<_> = events.map(|e| (e.point.value, e.kind)).collect();
+        let known = |e: &Event| (e.point.value, e.kind, e.error);
+        let mut events: Vec<_> = events.map(known).collect();
         events.sort_by(|a, b| a.0.total_cmp(&b.0));
         events
     };
@@ -30,14 +36,19 @@ fn events_in_a_narrow_place_are_found_both_ways_by_every_method() {
         found.extend([events(solved), events(moved)]);
         // The balance locates folds.
         let balanced = request.by(HarmonicBalance::new()).run().unwrap();
-        let folds = balanced.folds().map(|fold| fold.point.value);
-        let mut folds: Vec<f64> = folds.collect();
-        folds.sort_by(f64::total_cmp);
-        let of_first = found[0].iter().filter(|e| e.1 == EventKind::Fold);
-        for (a, b) in of_first.zip(&folds) {
-            assert!((a.0 - b).abs() < 1e-6, "{a:?} {b}");
-        }
+        let folds = balanced.folds().map(|fold| [fold.point.value, fold.error]);
+        let mut folds: Vec<[f64; 2]> = folds.collect();
+        folds.sort_by(|a, b| a[0].total_cmp(&b[0]));
         assert_eq!(folds.len(), 2);
+        let of_first = found[0].iter().filter(|e| e.1 == EventKind::Fold);
+        for (a, [value, error]) in of_first.zip(folds) {
+            let apart = (a.0 - value).abs();
+            assert!(
+                apart <= EXCEEDED * (a.2 + error),
+                "{a:?} {value} {error:.1e}"
+            );
+            assert!(error < 1e-6, "{value} {error:.1e}");
+        }
     }
     for other in &found {
         assert_eq!(other.len(), 4, "{found:?}");

@@ -8,4 +8,5 @@ mod methods;
 mod models;
 mod orbits;
 mod peaks;
+mod rates;
 mod stated;
