@@ -2,7 +2,7 @@
 
 use std::error::Error;
 use std::fmt;
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use hertzian::Cancel;
@@ -113,7 +113,11 @@ pub fn run(
         }
         token.cancel();
     });
-    let mut progress = Progress::new(!quiet && io::stderr().is_terminal());
+    let mut progress = if quiet {
+        Progress::hidden()
+    } else {
+        Progress::shown(name)
+    };
     let outcome = work(&cancel, &mut progress);
     progress.end();
     let complain = |message: &str| {

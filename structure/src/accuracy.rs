@@ -129,53 +129,38 @@ impl Effects<'_> {
         self
     }
 
-    /// Of each output at an orbit.
+    /// At an orbit, which is read once for all that is asked of it.
     ///
     /// # Errors
     /// If it is a reduction of [another structure](Reduced::is_of), the orbit cannot be read, or it was cancelled.
-    pub fn errors(&self, point: &Point) -> Result<Vec<OutputError>, ReducedError> {
+    pub fn at<'e>(&'e self, point: &'e Point) -> Result<EffectsAt<'e>, ReducedError> {
         let Self {
             reduced,
             structure,
             branch,
             cancel,
         } = self;
-        let at = AtOrbit::of(reduced, structure, branch, point, cancel)?;
-        let feedback = at.feedback(reduced, turns(point));
-        let first = 2 * structure.contacts.len() + structure.loads.len();
-        let read = structure.outputs.iter().enumerate();
-        let read = read.map(|(index, output)| Read {
-            row: first + index,
-            derivatives: output.kind.derivatives(),
-        });
-        let read: Vec<_> = read.collect();
-        if cancel.is_cancelled() {
-            return Err(ReducedError::Cancelled);
-        }
-        let changes = feedback.changes(&read, &at.off());
-        let outputs = structure.outputs.iter().zip(&read).zip(changes);
-        let errors = outputs.map(|((output, read), change)| {
-            let motion = branch.reading(&output.name, point)?.motion;
-            let off = Off::of(&at, read.row, output.kind, &change);
-            Ok(OutputError {
-                name: output.name.clone(),
-                error: part(off.swing, motion.peak_to_peak()),
-                swing: known(off.swing),
-                rms: known(off.rms()),
-                largest: known(off.largest),
-                harmonics: off.harmonics.into_iter().map(known).collect(),
-            })
-        });
-        errors.collect()
+        Ok(EffectsAt {
+            at: AtOrbit::of(reduced, structure, branch, point, cancel)?,
+            effects: self,
+            point,
+        })
+    }
+
+    /// Of each output at an orbit.
+    ///
+    /// # Errors
+    /// As of [`at`](Self::at).
+    pub fn errors(&self, point: &Point) -> Result<Vec<OutputError>, ReducedError> {
+        self.at(point)?.errors()
     }
 
     /// Of Floquet multipliers at an orbit, and the verdict on the whole structure, as [`Reduced::stability_at`].
     ///
     /// # Errors
-    /// If it is a reduction of [another structure](Reduced::is_of), the orbit cannot be read, or it was cancelled.
+    /// As of [`at`](Self::at).
     pub fn stability(&self, point: &Point) -> Result<ReducedStability, ReducedError> {
-        self.reduced
-            .stability_until(self.structure, self.branch, point, &self.cancel)
+        self.at(point)?.stability()
     }
 
     /// Of the frequency of each orbit of a branch of free oscillations, as [`Reduced::frequency_errors`].
@@ -185,6 +170,66 @@ impl Effects<'_> {
     pub fn frequencies(&self) -> Result<Vec<f64>, ReducedError> {
         self.reduced
             .frequencies_until(self.structure, self.branch, &self.cancel)
+    }
+}
+
+/// What a reduction changes at an orbit: see [`Effects::at`].
+#[derive(Debug)]
+pub struct EffectsAt<'e> {
+    at: AtOrbit<'e>,
+    effects: &'e Effects<'e>,
+    point: &'e Point,
+}
+
+impl EffectsAt<'_> {
+    /// Of each output.
+    ///
+    /// # Errors
+    /// If it was cancelled.
+    pub fn errors(&self) -> Result<Vec<OutputError>, ReducedError> {
+        let Self { at, effects, point } = self;
+        let structure = effects.structure;
+        let feedback = at.feedback(effects.reduced, turns(point));
+        let first = 2 * structure.contacts.len() + structure.loads.len();
+        let read = structure.outputs.iter().enumerate();
+        let read = read.map(|(index, output)| Read {
+            row: first + index,
+            derivatives: output.kind.derivatives(),
+        });
+        let read: Vec<_> = read.collect();
+        if effects.cancel.is_cancelled() {
+            return Err(ReducedError::Cancelled);
+        }
+        let changes = feedback.changes(&read, &at.off());
+        let outputs = structure.outputs.iter().zip(&at.outputs);
+        let changes = outputs.zip(read.iter().zip(changes));
+        let errors = changes.map(|((output, motion), (read, change))| {
+            let off = Off::of(at, read.row, output.kind, &change);
+            OutputError {
+                name: output.name.clone(),
+                error: part(off.swing, motion.peak_to_peak()),
+                swing: known(off.swing),
+                rms: known(off.rms()),
+                largest: known(off.largest),
+                harmonics: off.harmonics.into_iter().map(known).collect(),
+            }
+        });
+        Ok(errors.collect())
+    }
+
+    /// Of Floquet multipliers, and the verdict on the whole structure, as [`Reduced::stability_at`].
+    ///
+    /// # Errors
+    /// If it was cancelled.
+    pub fn stability(&self) -> Result<ReducedStability, ReducedError> {
+        let Self { at, effects, point } = self;
+        let Effects {
+            reduced,
+            structure,
+            cancel,
+            ..
+        } = effects;
+        reduced.stability_until(structure, at, point, cancel)
     }
 }
 

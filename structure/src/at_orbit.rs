@@ -1,7 +1,8 @@
 //! What the errors of a reduction are made of at an orbit: forces, gaps, and what is not known of compliances.
 
+use hertzian::observe::{Motion, Reading};
 use hertzian::structure::Value;
-use hertzian::{Branch, Cancel, Error, Point};
+use hertzian::{Branch, Cancel, Point};
 
 use crate::arms::Arm;
 use crate::description::{LoadKind, OutputKind, SparseStructure};
@@ -27,6 +28,8 @@ pub(crate) struct AtOrbit<'s> {
     pub(crate) gaps: Vec<Gap<'s>>,
     /// Of each contact.
     pub(crate) arms: Vec<Vec<Arm>>,
+    /// What each output does.
+    pub(crate) outputs: Vec<Motion>,
 }
 
 /// Values of parameters at an orbit.
@@ -45,17 +48,18 @@ struct Forces {
 }
 
 impl Forces {
+    /// With the force of each contact.
     fn of(
         reduced: &Reduced,
         structure: &SparseStructure,
         branch: &Branch,
         point: &Point,
-    ) -> Result<Self, Error> {
+        readings: &[Reading],
+    ) -> Self {
         // Forces along one row come together with their phases.
         let mut along: Vec<(usize, Vec<f64>)> = Vec::new();
         let mut base = point.omega();
-        for (index, contact) in structure.contacts.iter().enumerate() {
-            let reading = branch.reading(&contact.name, point)?;
+        for (index, (contact, reading)) in structure.contacts.iter().zip(readings).enumerate() {
             base = reading.base;
             for arm in Arm::of(contact, index, [point.omega(), base]) {
                 let series = arm.times(&reading.series);
@@ -88,10 +92,10 @@ impl Forces {
             }
             forces.push((2 * structure.contacts.len() + index, amplitudes));
         }
-        Ok(Self {
+        Self {
             amplitudes: forces,
             base,
-        })
+        }
     }
 }
 
@@ -105,7 +109,12 @@ impl<'s> AtOrbit<'s> {
         cancel: &Cancel,
     ) -> Result<Self, ReducedError> {
         reduced.is_of(structure)?;
-        let Forces { amplitudes, base } = Forces::of(reduced, structure, branch, point)?;
+        let contacts = structure.contacts.iter().map(|of| &*of.name);
+        let outputs = structure.outputs.iter().map(|of| &*of.name);
+        let names: Vec<&str> = contacts.chain(outputs).collect();
+        let readings = branch.readings(&names, point)?;
+        let (contacts, outputs) = readings.split_at(structure.contacts.len());
+        let Forces { amplitudes, base } = Forces::of(reduced, structure, branch, point, contacts);
         let of = |value: &Value| value.at(known(branch, point), point.omega());
         let speeds: Vec<f64> = structure.gyroscopic.iter().map(|g| of(&g.speed)).collect();
         let completed = branch.complete(point)?;
@@ -131,6 +140,7 @@ impl<'s> AtOrbit<'s> {
             doubt: Doubt::of_orbit(reduced, structure, &speeds, base),
             gaps: gaps.collect(),
             arms,
+            outputs: outputs.iter().map(|reading| reading.motion).collect(),
             speeds,
         })
     }

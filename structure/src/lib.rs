@@ -60,7 +60,7 @@ mod multipliers;
 mod reduced;
 mod reduction;
 
-pub use accuracy::{Effects, OutputError};
+pub use accuracy::{Effects, EffectsAt, OutputError};
 pub use description::{
     Damping, Direction, Gyroscopic, Load, LoadKind, OutputKind, Ratios, SparseContact,
     SparseStructure,

@@ -102,17 +102,16 @@ impl Reduced {
     pub(crate) fn stability_until(
         &self,
         structure: &SparseStructure,
-        branch: &Branch,
+        at: &AtOrbit<'_>,
         point: &Point,
         cancel: &Cancel,
     ) -> Result<ReducedStability, ReducedError> {
-        let at = AtOrbit::of(self, structure, branch, point, cancel)?;
         let multipliers = &point.stability.multipliers;
-        let modes = self.floquet_modes(&at, point, cancel);
+        let modes = self.floquet_modes(at, point, cancel);
         let near = modes.iter().flatten();
         let near = near.flat_map(|mode| exponent::frequencies(mode, at.base));
         let measured = at.measured.measured(structure, near, cancel)?;
-        let contacts = Contacts::of(self, &at);
+        let contacts = Contacts::of(self, at);
         let period = TAU / at.base;
         // Where nothing is left out vectors besides modes are modes too.
         let kept = if self.vectors() == self.coordinates {
@@ -127,7 +126,7 @@ impl Reduced {
             }
             whole.push(match mode {
                 Some(mode) => {
-                    let change = contacts.change(self, &at, &measured, mode);
+                    let change = contacts.change(self, at, &measured, mode);
                     let stands = mode.share(|vector| vector >= kept) > MOSTLY;
                     let mu = multipliers[index];
                     let apart = others(point, index).map(|other| (mu / other).ln().norm());

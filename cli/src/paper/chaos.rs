@@ -14,7 +14,7 @@ fn attractors(task: &Task<'_>, arguments: &str) -> Result<Results, String> {
     let words = arguments.split_whitespace().map(Into::into);
     let command = figures::expanded(std::iter::once("attractors".into()).chain(words));
     let options = Options::try_parse_from(command).map_err(|error| error.to_string())?;
-    let found = run::compute(&options, task.cancel, &mut Progress::new(false));
+    let found = run::compute(&options, task.cancel, &mut Progress::hidden());
     found.map_err(|error| error.to_string())
 }
 

@@ -117,9 +117,10 @@ pub fn run(
         ..options.clone()
     };
     let (options, resumed) = resumed::of(options)?;
-    let (model, reduced) = checked(&options, cancel)?;
+    let (model, reduced) = checked(&options, cancel, progress)?;
     let options = &structure::completed(&options, &*model);
     let mut seen = Seen::new(progress, options);
+    seen.begin(reduced.as_ref().and_then(|reduced| reduced.advice(options)));
     let mut note = None;
     let mut diagram = if let Some(branch) = resumed {
         resumed::find(options, &branch, &*model, cancel, &mut seen)?
@@ -182,7 +183,7 @@ pub fn run(
         warnings.extend(completed::all(&mut branches, cancel, see));
     }
     let reduction = match &reduced {
-        Some(reduced) => Some(reduced.of(options, &branches, &backbone, cancel)?),
+        Some(reduced) => Some(reduced.of(options, &branches, &backbone, cancel, &mut seen)?),
         None => None,
     };
     let record = Record {
@@ -247,13 +248,16 @@ fn drawn(
 fn checked(
     options: &Options,
     cancel: &Cancel,
+    progress: &mut Progress,
 ) -> Result<(Box<dyn System>, Option<Reduced>), Failure> {
     check(options)?;
     let varied = Varied {
         name: options.varied(),
         value: options.range.from,
     };
-    let (model, reduced) = if options.structure.file.is_some() {
+    let (model, reduced) = if let Some(path) = &options.structure.file {
+        progress.expect_long();
+        progress.begin(&format!("reducing {}", path.display()), None);
         let (model, reduced) = structure::read(options, cancel)?;
         (model, Some(reduced))
     } else {

@@ -55,6 +55,9 @@ pub struct Reduction {
     /// Of what `--plot` names of outputs the largest change along the branches, in its unit.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measured: Vec<(String, f64)>,
+    /// Of each output the largest change of a peak-to-peak at an event, as a part of it: errors that events state are those of the reduced structure.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<(String, f64)>,
     /// Verdicts on the whole structure.
     pub verdicts: Verdicts,
     /// The same of backbones.
@@ -135,6 +138,7 @@ pub fn completed(options: &Options, model: &dyn System) -> Options {
 mod sparse {
     use super::{Failure, OfBackbone, Options, Reduced, Reduction, Verdicts};
     use crate::response::backbone::Backbone;
+    use crate::response::progress::Seen;
     use hertzian::{Branch, Cancel, System};
 
     /// No structure.
@@ -158,6 +162,7 @@ mod sparse {
             _: &[Branch],
             _: &Backbone,
             _: &Cancel,
+            _: &mut Seen<'_>,
         ) -> Result<Reduction, Failure> {
             Ok(Reduction {
                 coordinates: 0,
@@ -167,6 +172,7 @@ mod sparse {
                 compliance: Vec::new(),
                 outputs: Vec::new(),
                 measured: Vec::new(),
+                events: Vec::new(),
                 verdicts: Verdicts::default(),
                 backbone: OfBackbone::default(),
             })
@@ -174,6 +180,11 @@ mod sparse {
 
         /// None: there is no such structure.
         pub fn drive(&self) -> Option<&str> {
+            None
+        }
+
+        /// None: there is no such structure.
+        pub fn advice(&self, _: &Options) -> Option<String> {
             None
         }
     }
@@ -186,6 +197,7 @@ mod sparse {
 
     use super::{Failure, OfBackbone, Options, Reduced, Reduction, Verdicts};
     use crate::response::backbone::Backbone;
+    use crate::response::progress::Seen;
 
     /// Orbits of a branch at which the error of the reduction is looked at, besides its events.
     const LOOKED_AT: usize = 16;
@@ -289,25 +301,35 @@ mod sparse {
             branches: &[Branch],
             backbone: &Backbone,
             cancel: &Cancel,
+            seen: &mut Seen<'_>,
         ) -> Result<Reduction, Failure> {
             let (mut outputs, mut measured) = (Largest::default(), Largest::default());
+            let mut at_events = Largest::default();
             let mut verdicts = Verdicts::default();
+            let step = |branch: &Branch| branch.points.len().div_ceil(LOOKED_AT).max(1);
+            let all = branches
+                .iter()
+                .map(|branch| branch.points.len().div_ceil(step(branch)) + branch.events.len());
+            let (all, mut done) = (all.sum(), 0);
             for branch in branches {
                 let effects = self.reduced.effects(&self.whole, branch).cancel(cancel);
-                let step = branch.points.len().div_ceil(LOOKED_AT).max(1);
-                let points = branch.points.iter().step_by(step);
-                for point in points.clone() {
-                    let Some(stability) = kept(effects.stability(point))? else {
+                let points = branch.points.iter().step_by(step(branch));
+                let points = points.map(|point| (point, true));
+                let events = branch.events.iter().map(|event| (&event.point, false));
+                for (point, judged) in points.chain(events) {
+                    let Some(at) = kept(effects.at(point))? else {
                         break;
                     };
-                    verdicts.looked_at += 1;
-                    verdicts.decided += usize::from(stability.verdict != Verdict::Undecided);
-                }
-                let events = branch.events.iter().map(|event| &event.point);
-                for point in points.chain(events) {
-                    let found = kept(effects.errors(point))?.unwrap_or_default();
+                    if judged && let Some(stability) = kept(at.stability())? {
+                        verdicts.looked_at += 1;
+                        verdicts.decided += usize::from(stability.verdict != Verdict::Undecided);
+                    }
+                    let found = kept(at.errors())?.unwrap_or_default();
                     for found in found {
                         outputs.take(&found.name, found.error);
+                        if !judged {
+                            at_events.take(&found.name, found.error);
+                        }
                         let asked = options.plot.iter();
                         for wanted in asked.filter(|wanted| wanted.name == found.name) {
                             if let Some(error) = found.of(wanted.measure) {
@@ -315,6 +337,8 @@ mod sparse {
                             }
                         }
                     }
+                    done += 1;
+                    seen.reduced(done, all);
                 }
             }
             let reduced = &self.reduced;
@@ -326,6 +350,7 @@ mod sparse {
                 compliance: reduced.compliance_errors(),
                 outputs: outputs.0,
                 measured: measured.0,
+                events: at_events.0,
                 verdicts,
                 backbone: self.of_backbone(backbone, cancel)?,
             })
@@ -354,6 +379,21 @@ mod sparse {
         /// The parameter that all loads that change with time are proportional to.
         pub fn drive(&self) -> Option<&str> {
             self.whole.drive()
+        }
+
+        /// What to do where the first orbit takes long: with fewer vectors it takes less.
+        pub fn advice(&self, options: &Options) -> Option<String> {
+            let (vectors, modes) = (self.reduced.vectors(), self.reduced.modes());
+            let own = &options.structure;
+            let by = match (own.modes, own.steps) {
+                (None, None) => "--modes with fewer, or --steps 1,",
+                (Some(_), None) => "fewer --modes, or --steps 1,",
+                (None, Some(_)) => "--modes with fewer, or fewer --steps,",
+                (Some(_), Some(_)) => "fewer --modes or --steps",
+            };
+            Some(format!(
+                "the first orbit of {vectors} vectors, {modes} of them modes, takes long: {by} leave fewer, and the summary says what that changes"
+            ))
         }
     }
 }
@@ -385,6 +425,12 @@ impl Reduction {
             let _ = writeln!(
                 text,
                 "error      of {wanted} by the reduction: at most {error:.0e}"
+            );
+        }
+        for (name, error) in &self.events {
+            let _ = writeln!(
+                text,
+                "events     are those of the reduced structure, with its errors: there the reduction changes peak-to-peak of {name} by at most {error:.0e} of it"
             );
         }
         let mut frequencies = self.backbone.frequencies.clone();

@@ -79,7 +79,7 @@ fn written(name: &str, command: &str) -> (Value, String) {
     let mut options = Options::try_parse_from(words).expect("arguments that can be parsed");
     (options.svg, options.json, options.csv) = (svg, Some(json.clone()), Some(csv.clone()));
     let never = Cancel::new();
-    run(&options, &never, &mut Progress::new(false)).expect("a branch");
+    run(&options, &never, &mut Progress::hidden()).expect("a branch");
     let [json, csv] = [json, csv].map(|path| std::fs::read_to_string(path).expect("a file"));
     let _ = std::fs::remove_dir_all(&folder);
     (serde_json::from_str(&json).expect("JSON"), csv)

@@ -22,7 +22,7 @@ const MODEL: &str = "Linear(x) {
 fn fit(words: &[&str]) -> Result<Ended, String> {
     let words = [&["fit"], words].concat();
     let options = Options::try_parse_from(words).map_err(|error| error.to_string())?;
-    run(&options, &Cancel::new(), &mut Progress::new(false)).map_err(|failure| failure.to_string())
+    run(&options, &Cancel::new(), &mut Progress::hidden()).map_err(|failure| failure.to_string())
 }
 
 /// Peak-to-peak of that model with other values, at two levels of the drive.
@@ -161,6 +161,6 @@ fn ctrl_c_keeps_the_best() {
     let options = Options::try_parse_from(words).expect("options");
     let cancel = Cancel::new();
     cancel.cancel();
-    let error = run(&options, &cancel, &mut Progress::new(false)).expect_err("nothing was found");
+    let error = run(&options, &cancel, &mut Progress::hidden()).expect_err("nothing was found");
     assert_eq!(error.to_string(), "cancelled before anything was found");
 }

@@ -16,7 +16,7 @@ fn writes_a_table_and_two_pictures() {
     let words = ["multipliers", "--harmonics", "4", "7", "--folder"];
     let words = words.into_iter().chain([folder.to_str().unwrap()]);
     let options = Options::try_parse_from(words).unwrap();
-    let quiet = &mut Progress::new(false);
+    let quiet = &mut Progress::hidden();
     let ended = run(&options, &Cancel::new(), quiet).unwrap();
     let summary = ended.summary;
     for (method, _) in METHODS {

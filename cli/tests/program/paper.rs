@@ -32,7 +32,7 @@ fn draw(folder: &Path, figures: &[&str]) -> Vec<Drawn> {
     let folder = folder.to_str().unwrap();
     let words = [&["paper", "--out", folder, "--only"], figures].concat();
     let options = Options::try_parse_from(words).unwrap();
-    run(&options, &Cancel::new(), &mut Progress::new(false)).unwrap()
+    run(&options, &Cancel::new(), &mut Progress::hidden()).unwrap()
 }
 
 /// Every value that is known is found, and is the exact one.
@@ -108,7 +108,7 @@ fn an_interrupted_run_writes_its_page() {
     let options = Options::try_parse_from(options).unwrap();
     let now = Cancel::new();
     now.cancel();
-    let drawn = run(&options, &now, &mut Progress::new(false)).unwrap();
+    let drawn = run(&options, &now, &mut Progress::hidden()).unwrap();
     assert!(drawn.is_empty());
     assert!(folder.0.join("index.html").exists());
 }
@@ -118,7 +118,7 @@ fn a_folder_that_cannot_be_made_is_named() {
     let folder = Folder::new("file");
     fs::write(&folder.0, "").unwrap();
     let options = Options::try_parse_from(["paper", "--out", folder.0.to_str().unwrap()]).unwrap();
-    let failure = run(&options, &Cancel::new(), &mut Progress::new(false));
+    let failure = run(&options, &Cancel::new(), &mut Progress::hidden());
     assert!(
         failure
             .err()

@@ -31,7 +31,7 @@ impl Folder {
         let [svg, json] = ["svg", "json"].map(|kind| self.file(&format!("{name}.{kind}")));
         let command = format!("{command} --svg {svg} --json {json}");
         let never = Cancel::new();
-        run(&options(&command), &never, &mut Progress::new(false))
+        run(&options(&command), &never, &mut Progress::hidden())
     }
 
     fn picture(&self, name: &str) -> String {
@@ -198,7 +198,7 @@ fn a_map_has_a_cell_for_every_pair() {
         ("verdict", "\"stable and unstable\""),
     ] {
         let words = format!("{words} --what {what}");
-        let found = mapped(&folder, &words, &mut Progress::new(false), &never);
+        let found = mapped(&folder, &words, &mut Progress::hidden(), &never);
         let (ended, map, svg) = found.expect("a map");
         assert!(ended.complete && ended.complaints.is_empty());
         let stable: Vec<usize> = map.cells.iter().map(|cell| cell.stable).collect();
@@ -219,7 +219,7 @@ fn a_map_is_shown_from_its_file() {
     let words =
         "--alpha 1 --from 0.7 --to 1.1 --count 3 --over drive --low 0.02 --high 0.1 --rows 2";
     let never = Cancel::new();
-    let (ended, map, _) = mapped(&folder, words, &mut Progress::new(false), &never).expect("a map");
+    let (ended, map, _) = mapped(&folder, words, &mut Progress::hidden(), &never).expect("a map");
     let [json, svg, csv] = ["map.json", "again.svg", "again.csv"].map(|name| folder.file(name));
     let shown = |words: &str| {
         let words = format!("hertzian show {json} {words}");
@@ -301,7 +301,7 @@ fn what_makes_no_map_is_refused() {
         (&format!("{over} --model gear-pair"), "no parameter"),
     ] {
         let never = Cancel::new();
-        let said = mapped(&folder, words, &mut Progress::new(false), &never);
+        let said = mapped(&folder, words, &mut Progress::hidden(), &never);
         let said = said.err().unwrap_or_default();
         assert!(said.contains(message), "{words}: {said}");
     }

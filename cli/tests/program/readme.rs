@@ -49,7 +49,7 @@ fn response(name: &str, command: &str) -> (String, Vec<[f64; 2]>) {
     options.svg = folder.join("response.svg");
     options.json = Some(json.clone());
     let never = Cancel::new();
-    let outcome = run(&options, &never, &mut Progress::new(false)).expect("a branch");
+    let outcome = run(&options, &never, &mut Progress::hidden()).expect("a branch");
     assert!(outcome.complete);
     let text = std::fs::read_to_string(&json).expect("a file");
     let all: Value = serde_json::from_str(&text).expect("JSON");

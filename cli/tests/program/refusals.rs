@@ -25,7 +25,7 @@ fn attractors_options(command: &str) -> attractors::options::Options {
 fn refused_by_response(command: &str) -> String {
     let options = response_options(command).expect("arguments that can be parsed");
     let never = Cancel::new();
-    let failure = response::run::run(&options, &never, &mut Progress::new(false));
+    let failure = response::run::run(&options, &never, &mut Progress::hidden());
     let failure = failure.expect_err(command);
     assert_eq!(failure.exit_code(), 2);
     failure.to_string()
@@ -40,7 +40,7 @@ fn run_attractors(
         cancel.cancel();
     }
     let options = attractors_options(command);
-    attractors::run::run(&options, &cancel, &mut Progress::new(false))
+    attractors::run::run(&options, &cancel, &mut Progress::hidden())
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn transients_can_be_ended() {
     }
     let options = attractors_options("--phase --alpha 1");
     let model = response::models::declared(&options.model);
-    let mut progress = Progress::new(false);
+    let mut progress = Progress::hidden();
     let cancel = Cancel::new();
     cancel.cancel();
     let task = attractors::run::Task {
@@ -356,7 +356,7 @@ fn other_programs_refuse_before_any_work_too() {
         let out = folder.file("a");
         let words = ["work_precision", "--out", &out].into_iter().chain(words);
         let options = work_precision::options::Options::try_parse_from(words).expect("a command");
-        let quiet = &mut Progress::new(false);
+        let quiet = &mut Progress::hidden();
         let failure = work_precision::run(&options, Vec::new(), &never, quiet);
         let text = failure.err().expect("a refusal").to_string();
         assert!(text.contains(message), "{text}");
@@ -374,7 +374,7 @@ fn other_programs_refuse_before_any_work_too() {
         let words = words.map(|word| if word == "FILE" { &file } else { word });
         let words = ["multipliers"].into_iter().chain(words);
         let options = multipliers::Options::try_parse_from(words).expect("a command");
-        let failure = multipliers::run(&options, &never, &mut Progress::new(false));
+        let failure = multipliers::run(&options, &never, &mut Progress::hidden());
         let text = failure.expect_err("a refusal").to_string();
         assert!(text.contains(message), "{text}");
     }

@@ -34,7 +34,7 @@ fn study(words: &[&str], file: &Path) -> Result<Ended, String> {
     let file = file.to_str().expect("a path");
     let words = [&["study", file], words].concat();
     let options = Options::try_parse_from(words).map_err(|error| error.to_string())?;
-    run(&options, &Cancel::new(), &mut Progress::new(false)).map_err(|failure| failure.to_string())
+    run(&options, &Cancel::new(), &mut Progress::hidden()).map_err(|failure| failure.to_string())
 }
 
 #[test]

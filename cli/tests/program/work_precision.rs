@@ -24,7 +24,7 @@ fn every_method_is_measured_against_what_is_known() {
     let options = Options::try_parse_from(words).unwrap();
     let mut problems = problem::all();
     problems.truncate(1);
-    let quiet = &mut Progress::new(false);
+    let quiet = &mut Progress::hidden();
     let sections = run(&options, problems, &Cancel::new(), quiet).unwrap();
     let measured = &sections[0].measured;
     for family in Family::ALL {

@@ -43,7 +43,7 @@ const SEEN: usize = 64;
 const GUESSED: f64 = 1e-5;
 
 /// How a first orbit is solved for.
-const AT_START: NewtonOptions = NewtonOptions {
+pub(super) const AT_START: NewtonOptions = NewtonOptions {
     tolerance: 1e-10,
     iterations: 40,
     damped: true,
@@ -71,11 +71,11 @@ pub(crate) struct Followed {
 }
 
 /// A first orbit.
-struct First {
-    equations: Equations,
-    u: Vec<f64>,
-    frame: Frame,
-    resolution: usize,
+pub(super) struct First {
+    pub(super) equations: Equations,
+    pub(super) u: Vec<f64>,
+    pub(super) frame: Frame,
+    pub(super) resolution: usize,
 }
 
 /// The orbit near another one where what is varied has a value.
@@ -103,6 +103,16 @@ pub(super) fn orbit_near(
     let first = first(problem, guess, value)?;
     let (run, u) = fitting(problem, first).ok_or(lost(value))?;
     read(run, u, value)
+}
+
+/// The orbit near a motion that comes back as it does, at its value: equations that fit it, and its unknowns.
+pub(super) fn like<'p>(
+    problem: &'p ContactProblem,
+    guess: &Guess<'_>,
+) -> Option<(Run<'p>, Vec<f64>)> {
+    let Point { value, orbit, .. } = guess.point;
+    let first = first_like(problem, guess, *value, &orbit.recurrence()).ok()?;
+    fitting(problem, first)
 }
 
 /// What is read off an orbit, which is solved for again with more nodes where its own overlook something, or its errors ask for them.
@@ -148,7 +158,7 @@ fn read(mut run: Run<'_>, mut u: Vec<f64>, value: f64) -> Result<Point, Error> {
 }
 
 /// An orbit solved for again with another resolution, in equations that fit it.
-fn solved_with(run: &mut Run<'_>, u: &[f64], resolution: usize) -> Option<Vec<f64>> {
+pub(super) fn solved_with(run: &mut Run<'_>, u: &[f64], resolution: usize) -> Option<Vec<f64>> {
     run.resolution = resolution;
     let (equations, mut u) = run.replanned(u)?;
     run.equations = equations;
@@ -541,6 +551,20 @@ fn first_with(
     resolution: usize,
     recurrence: &Recurrence,
 ) -> Result<First, NewtonError> {
+    let mut first = planned(problem, guess, value, resolution, recurrence)?;
+    let mut newton = Newton::new(&first.equations);
+    solve::at_value(&mut first.equations, &mut newton, &mut first.u, AT_START)?;
+    Ok(first)
+}
+
+/// The equations of an orbit near a guess, with unknowns that are not solved for.
+pub(super) fn planned(
+    problem: &ContactProblem,
+    guess: &Guess<'_>,
+    value: f64,
+    resolution: usize,
+    recurrence: &Recurrence,
+) -> Result<First, NewtonError> {
     let unusable = NewtonError::NotFinite { iterations: 0 };
     let values = problem.setting.values(value).ok_or(unusable)?;
     let coordinates = guess.point.orbit.coordinates();
@@ -566,9 +590,7 @@ fn first_with(
         resolution: RESOLUTIONS[resolution],
     };
     let planned = plan.equations(&problem.setting, value, &gaps, &frame);
-    let (mut equations, mut u) = planned.ok_or(unusable)?;
-    let mut newton = Newton::new(&equations);
-    solve::at_value(&mut equations, &mut newton, &mut u, AT_START)?;
+    let (equations, u) = planned.ok_or(unusable)?;
     Ok(First {
         equations,
         u,

@@ -1,4 +1,5 @@
-//! Motions that a first orbit is looked for at: the series of an orbit, or its states along the motion itself.
+//! Motions that a first orbit is looked for at: the series of an orbit, or its states along the motion itself, by [steps](super::march) as exact as a search
+//! needs, or by integration.
 //!
 //! Between samples that are `d` apart, with positions `a`, `b` and velocities `v`, `w`, positions are at the part `s` of the way
 //!
@@ -20,6 +21,8 @@ use std::f64::consts::TAU;
 
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
+use crate::contact_equation::linear_part::block::Block;
+use crate::contact_equation::march::March;
 use crate::contact_equation::problem::ContactProblem;
 use crate::error::Error;
 use crate::time::stroboscope::Stroboscope;
@@ -27,6 +30,8 @@ use crate::time::{MotionError, history};
 
 /// Samples in a period of the declaration.
 const SAMPLES: usize = 4096;
+/// Where no pair of states of the linear part turns by a larger angle in a period, an integration is quicker: its steps are as long as that allows.
+const STIFF: f64 = 1000.0;
 
 /// An orbit with its motion.
 pub(in crate::contact_equation) struct Guess<'g> {
@@ -66,7 +71,45 @@ impl<'g> Guess<'g> {
         if point.orbit.has_series() {
             return Ok(Self::by_series(point));
         }
-        Self::by_motion(problem, point)
+        match Self::by_steps(problem, point) {
+            Some(guess) => Ok(guess),
+            None => Self::by_motion(problem, point),
+        }
+    }
+
+    /// By equal steps from the states of an orbit. `None` where these are no way to go, or an integration takes less time.
+    pub(in crate::contact_equation) fn by_steps(
+        problem: &ContactProblem,
+        point: &'g Point,
+    ) -> Option<Self> {
+        let values = problem.setting.values(point.value)?;
+        let rates = values.linear.blocks.iter().map(Block::rate);
+        if rates.fold(0.0, f64::max) * TAU <= STIFF * values.base {
+            return None;
+        }
+        let mut march = March::new(&problem.setting, &values, TAU / SAMPLES as f64)?;
+        let state = point.orbit.state();
+        let (order, periods) = (state.len(), point.orbit.period);
+        let known = known_beginnings(point);
+        let mut samples = vec![0.0; order * (SAMPLES * periods + 1)];
+        samples[..order].copy_from_slice(&state);
+        march.begin(0.0, &state);
+        for (index, sample) in samples.chunks_exact_mut(order).enumerate().skip(1) {
+            if !march.step() {
+                return None;
+            }
+            march.write(sample);
+            let begins = index % SAMPLES == 0;
+            if let Some(state) = known.get(index / SAMPLES).filter(|_| begins) {
+                sample.copy_from_slice(state);
+                march.begin(march.phase(), state);
+            }
+        }
+        Some(Self {
+            point,
+            samples,
+            toward: None,
+        })
     }
 
     /// By the motion from the states of an orbit, which has few harmonics where contacts are stiff.
@@ -88,13 +131,11 @@ impl<'g> Guess<'g> {
         let mut state = point.orbit.state();
         let periods = point.orbit.period;
         let mut map = Stroboscope::new(flow);
-        let known: Vec<&[f64]> = point.orbit.states().collect();
-        // Motions part from an unstable orbit, so that each period begins with the state that is known there.
+        let known = known_beginnings(point);
         let order = state.len();
-        let is_known = point.orbit.parts == 1 && known.len() == periods;
         for period in 0..periods {
-            if is_known {
-                state.copy_from_slice(known[period]);
+            if let Some(known) = known.get(period) {
+                state.copy_from_slice(known);
             }
             // The last state of a period is the first one of the next.
             samples.truncate(period * SAMPLES * order);
@@ -153,6 +194,16 @@ impl<'g> Guess<'g> {
             state[i] = a[i] + s * (ends[0] + s * (square + s * cube));
             state[n + i] = (ends[0] + s * (2.0 * square + 3.0 * s * cube)) / step;
         }
+    }
+}
+
+/// States at the beginnings of periods, where all are known: motions part from an unstable orbit, so that each period begins with that.
+fn known_beginnings(point: &Point) -> Vec<&[f64]> {
+    let known: Vec<&[f64]> = point.orbit.states().collect();
+    if point.orbit.parts == 1 && known.len() == point.orbit.period {
+        known
+    } else {
+        Vec::new()
     }
 }
 

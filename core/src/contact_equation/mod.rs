@@ -16,7 +16,7 @@
 //! | [`branch`] | what the engine of branches asks for: events, extremes of gaps; how a branch is resumed |
 //!
 //! [`problem`] is what was asked for, [`options`] how, [`guess`] where an orbit is looked for, and [`compute`] begins: one orbit, or a branch; [`at`] has the orbits
-//! of a branch at a value.
+//! of a branch at a value, [`completed`] orbits with everything that is read off; [`march`] is how motions are guessed.
 //!
 //! Switches are unknowns and solved for. That there are no others is told by extremes of gaps, which are looked for between samples of the
 //! motion: see [`extremes`](orbit::extremes) for what that may miss.
@@ -29,10 +29,12 @@
 pub(crate) mod at;
 mod branch;
 mod collocation;
+pub(crate) mod completed;
 pub(crate) mod compute;
 mod equations;
 mod guess;
 mod linear_part;
+mod march;
 mod options;
 mod orbit;
 pub(crate) mod problem;

@@ -141,8 +141,9 @@ impl Branch {
     }
 
     /// An orbit of this branch with its Fourier series, and everything that is read off. By the balance it has that already; by other methods
-    /// its motion is computed once more, and 20 harmonics for each period of the excitation are kept. Where that motion does not come back as
-    /// nearly as the stated error has it, it is the periodic one beside it; extremes of coordinates, and states, stay those of the orbit.
+    /// its motion is computed once more, and 20 harmonics for each period of the excitation are kept. By the contact equation that is solved again at the
+    /// value, with so many nodes that more change nothing; where it has no solution there, as beside a fold, and by shooting, the motion is integrated. Where that
+    /// does not come back as nearly as the stated error has it, it is the periodic one beside it; extremes of coordinates, and states, stay those of the orbit.
     ///
     /// # Errors
     /// If the orbit is not one of this system, its motion cannot be computed, or the branch was read from a file and has no
@@ -151,9 +152,7 @@ impl Branch {
         if point.orbit.has_series() {
             return Ok(point.clone());
         }
-        let following = self.followed()?;
-        let plain = self.of_motion(point);
-        let found = by_shooting::completed(following.request(), following.shooting(), &plain)?;
+        let found = self.motions()?.completed(&self.of_motion(point))?;
         Ok(Point {
             error: point.error,
             ..found

@@ -16,6 +16,7 @@ use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::request::Request;
 use crate::branches::solve::Toward;
+use crate::contact_equation::completed::Solved;
 use crate::contact_equation::compute::{Followed, Guesses, Untouched};
 use crate::contact_equation::problem::ContactProblem;
 use crate::contact_equation::{ContactEquation, Rest, compute};
@@ -112,6 +113,27 @@ pub(super) fn run(
     };
     let followed = compute::branch(&problem, guesses, range, visit)?;
     Ok(with_request(followed, request, equation, otherwise))
+}
+
+/// What is read of an orbit that is known by its states, solved for again. `None` where it is not found by the contact equation.
+///
+/// # Errors
+/// If the orbit is not one of the system.
+pub(super) fn solved<T>(
+    request: &Request,
+    equation: ContactEquation,
+    point: &Point,
+    read: impl FnOnce(&Solved<'_>) -> T,
+) -> Result<Option<T>, Error> {
+    let (shooting, request) =
+        by_shooting::of_period(equation.shooting(), request, point.orbit.period);
+    let asked = Asked::of(&request, &shooting).held();
+    asked.belongs(point)?;
+    let Ok(asked) = asked.problem(point.value, point.value) else {
+        return Ok(None);
+    };
+    let problem = ContactProblem::new(asked, request.tolerance);
+    Ok(Solved::of(&problem, point).as_ref().map(read))
 }
 
 /// What the contact equation has found, or else what shooting finds.

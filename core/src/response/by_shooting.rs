@@ -207,24 +207,32 @@ pub(super) fn reading(
     let shooting = as_known(shooting, &request, point);
     let asked = Asked::of(&request, &shooting);
     asked.belongs(point)?;
-    let signal = match source {
+    let problem = asked.problem(point.value, point.value)?;
+    let found = complete::reading(&problem, point, signal(source))?;
+    Ok(read(found, point))
+}
+
+/// What a source is along a motion.
+pub(super) fn signal(source: Source) -> Signal {
+    match source {
         Source::Output(index) => Signal::Output(index),
         Source::Coordinate(index) => Signal::Coordinate(index),
         Source::Contact(index) => Signal::Contact(index),
+    }
+}
+
+/// The first of what was found along the motion of an orbit.
+pub(super) fn read(found: Vec<Found>, point: &Point) -> Reading {
+    let nothing = || Found {
+        motion: Motion::of(&[]),
+        series: Vec::new(),
     };
-    let problem = asked.problem(point.value, point.value)?;
-    let found = complete::reading(&problem, point, signal)?
-        .into_iter()
-        .next();
-    let (motion, series) = found.map_or_else(
-        || (Motion::of(&[]), Vec::new()),
-        |Found { motion, series }| (motion, series),
-    );
-    Ok(Reading {
+    let Found { motion, series } = found.into_iter().next().unwrap_or_else(nothing);
+    Reading {
         motion,
         series,
         base: point.orbit.base,
-    })
+    }
 }
 
 /// Shooting with a flow whose tolerance is a tenth of the stated error of an orbit, where that is finer than what was asked for.

@@ -162,6 +162,14 @@ impl Following {
         }
     }
 
+    /// The contact equation, where that is the method.
+    pub(super) fn equation(&self) -> Option<ContactEquation> {
+        match self {
+            Self::ContactEquation { equation, .. } => Some(*equation),
+            _ => None,
+        }
+    }
+
     /// Of a branch that was followed both ways the value from which it was, and the place of the orbit there.
     pub(super) fn both_ways(&self) -> Option<(f64, usize)> {
         match self {

@@ -11,6 +11,7 @@ mod following;
 mod growing;
 mod in_turn;
 mod kind;
+mod motion;
 mod multipliers;
 mod reading;
 #[cfg(feature = "serde")]
@@ -29,6 +30,7 @@ pub use resume::Resume;
 
 use std::ops::ControlFlow;
 
+use self::motion::Motions;
 use crate::balance::aft::Aft;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::{Branch, Model};
@@ -444,8 +446,25 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         if point.orbit.has_series() {
             return Ok(point.clone());
         }
-        let found = by_shooting::completed(&self.request, self.shooting()?, point);
+        let found = self.motions()?.completed(point);
         self.request.unless_cancelled(point.value, found)
+    }
+
+    /// What the motions of its orbits are computed by.
+    ///
+    /// # Errors
+    /// If neither an output nor a coordinate has the name that was given.
+    fn motions(&self) -> Result<Motions<'_>, Error> {
+        let method: &dyn std::any::Any = &self.method;
+        let has_equation = method.is::<ContactEquation>() || method.is::<Chosen>();
+        let equation = ContactEquation {
+            accuracy: self.accuracy()?,
+        };
+        Ok(Motions {
+            request: &self.request,
+            shooting: self.shooting()?,
+            equation: has_equation.then_some(equation),
+        })
     }
 
     /// The method, which knows what the accuracy is of.

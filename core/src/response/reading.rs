@@ -3,7 +3,7 @@
 #[cfg(feature = "serde")]
 use serde::Deserialize;
 
-use super::{FrequencyResponse, OrbitMethod, by_shooting};
+use super::{FrequencyResponse, OrbitMethod};
 use crate::branches::branch::{Branch, Further, Model, Source};
 use crate::branches::point::Point;
 use crate::error::Error;
@@ -47,6 +47,40 @@ impl Branch {
     /// computed.
     pub fn reading(&self, name: &str, point: &Point) -> Result<Reading, Error> {
         self.read_signal(self.model.source(name)?, point)
+    }
+
+    /// Several signals over the period of an orbit, by their names, as [`reading`](Self::reading) has one: its motion is computed once.
+    ///
+    /// ```
+    /// use hertzian::FrequencyResponse;
+    ///
+    /// hertzian::oscillator! {
+    ///     Stopped(x) {
+    ///         law stop(gap) { gap > 0 => 10*gap, else => 0 }
+    ///         ddot(x) + 0.1*dot(x) + x + stop(x - 1) = 0.3*cos(omega*t);
+    ///         output speed = dot(x);
+    ///     }
+    /// }
+    ///
+    /// let branch = FrequencyResponse::of(&Stopped {}).from(0.5).to(1.5).run()?;
+    /// let orbit = &branch.at(1.2)?[0];
+    /// let read = branch.readings(&["speed", "stop"], orbit)?;
+    /// assert_eq!(read[1], branch.reading("stop", orbit)?);
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`reading`](Self::reading).
+    pub fn readings(&self, names: &[&str], point: &Point) -> Result<Vec<Reading>, Error> {
+        let sources = names.iter().map(|name| self.model.source(name));
+        let sources: Vec<Source> = sources.collect::<Result<_, _>>()?;
+        if let (false, Ok(motions)) = (point.orbit.states.is_empty(), self.motions()) {
+            return motions.readings(&sources, &self.of_motion(point));
+        }
+        let read = sources
+            .into_iter()
+            .map(|source| self.read_signal(source, point));
+        read.collect()
     }
 
     /// What is asked of a signal at an orbit, by name: `"tip:rms".parse()?`. `None` where it is not there, as a harmonic of an orbit that has
@@ -124,13 +158,8 @@ impl Branch {
 
     fn read_signal(&self, source: Source, point: &Point) -> Result<Reading, Error> {
         // The series of an orbit that is known by its states was cut off, and its motion was not.
-        if let (false, Ok(following)) = (point.orbit.states.is_empty(), self.followed()) {
-            return by_shooting::reading(
-                following.request(),
-                following.shooting(),
-                &self.of_motion(point),
-                source,
-            );
+        if let (false, Ok(motions)) = (point.orbit.states.is_empty(), self.motions()) {
+            return motions.reading(source, &self.of_motion(point));
         }
         // A coordinate is its series: that takes no model.
         if let Source::Coordinate(index) = source
@@ -142,13 +171,7 @@ impl Branch {
         if point.orbit.has_series() {
             return of_series(system, point, source);
         }
-        let following = self.followed()?;
-        by_shooting::reading(
-            following.request(),
-            following.shooting(),
-            &self.of_motion(point),
-            source,
-        )
+        self.motions()?.reading(source, &self.of_motion(point))
     }
 }
 
@@ -211,7 +234,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         if point.orbit.states.is_empty() {
             return of_series(self.request.system.as_ref(), point, source);
         }
-        by_shooting::reading(&self.request, self.shooting()?, point, source)
+        self.motions()?.reading(source, point)
     }
 }
 

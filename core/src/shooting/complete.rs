@@ -28,21 +28,60 @@ use crate::time::{FlowError, MotionError};
 const SAMPLES: usize = 1024;
 const HARMONICS: usize = 20;
 
+/// What is read off a motion over the period of an orbit.
+pub(crate) struct Readings<'r> {
+    pub(crate) outputs: Vec<Motion>,
+    /// Positions at equal distances, [so many](samples) in each period of the declaration, coordinate by coordinate.
+    pub(crate) samples: Vec<f64>,
+    /// What coordinates do, where the orbit does not say so.
+    pub(crate) extremes: Vec<Motion>,
+    /// Along which the forces of contacts were read.
+    pub(crate) contacts: Reader<'r>,
+}
+
+/// Samples in a period of the declaration.
+pub(crate) fn samples(problem: &ShootingProblem) -> usize {
+    SAMPLES * problem.divisor as usize
+}
+
+/// Harmonics that are kept of an orbit of so many periods of the declaration.
+pub(crate) fn harmonics(problem: &ShootingProblem, period: usize) -> usize {
+    HARMONICS * problem.divisor as usize * period
+}
+
 /// An orbit with its series, and everything that is read off.
 ///
 /// # Errors
 /// If the motion cannot be computed.
 pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point, Error> {
     let (outputs, closed) = read(problem, point, Asked::Outputs, 0)?;
-    let outputs = kept(&point.observed.outputs, outputs.motions());
     let (given, point) = (point, &closed);
-    let coordinates = point.orbit.coordinates;
-    let divisor = problem.divisor as usize;
-    let samples = sampled(problem, point, SAMPLES * divisor)?;
-    let count = samples.len() / coordinates;
-    let harmonics = HARMONICS * divisor * point.orbit.period;
+    let extremes = if point.observed.sampled {
+        read_along(problem, point, Asked::Coordinates)?.motions()
+    } else {
+        Vec::new()
+    };
+    let readings = Readings {
+        outputs: outputs.motions(),
+        samples: sampled(problem, point, samples(problem))?,
+        extremes,
+        contacts: read_along(problem, point, Asked::Contacts)?,
+    };
+    Ok(assembled(problem, given, readings))
+}
+
+/// An orbit with what was read off its motion.
+pub(crate) fn assembled(problem: &ShootingProblem, point: &Point, readings: Readings<'_>) -> Point {
+    let Readings {
+        outputs,
+        samples,
+        extremes,
+        contacts,
+    } = readings;
+    let count = samples.len() / point.orbit.coordinates;
+    let harmonics = harmonics(problem, point.orbit.period);
     let mut transform = SampledTransform::new(count);
-    let mut u = vec![0.0; coordinates * series::length(harmonics) + 1];
+    let mut u = vec![0.0; point.orbit.coordinates * series::length(harmonics) + 1];
     let parts = u.chunks_exact_mut(series::length(harmonics));
     for (samples, series) in samples.chunks_exact(count).zip(parts) {
         transform.analyse(samples, series);
@@ -68,11 +107,11 @@ pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point
     balance.set(point.value);
     let mut observed = Observer::default().observe(&mut balance, &u);
     let extremes = if point.observed.sampled {
-        read_along(problem, point, Asked::Coordinates)?.motions()
+        &extremes
     } else {
-        point.observed.motions.clone()
+        &point.observed.motions
     };
-    let parts = samples.chunks_exact(count).zip(&extremes);
+    let parts = samples.chunks_exact(count).zip(extremes);
     for (motion, (samples, extremes)) in observed.motions.iter_mut().zip(parts) {
         let square: f64 = samples.iter().map(|x| x * x).sum();
         motion.maximum = extremes.maximum;
@@ -82,18 +121,16 @@ pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point
     u.truncate(n);
     observed.switches = point.observed.switches;
     // Outputs and contacts from the motion itself: forces take more harmonics than positions.
-    observed.outputs = outputs;
-    let contacts = read_along(problem, point, Asked::Contacts)?;
-    let period = TAU / point.orbit.base;
-    (observed.contacts, observed.on_pieces) = contacts.contacts(period);
-    Ok(Point {
+    observed.outputs = kept(&point.observed.outputs, outputs);
+    (observed.contacts, observed.on_pieces) = contacts.contacts(TAU / point.orbit.base);
+    Point {
         orbit: Orbit {
             series: u,
-            ..given.orbit.clone()
+            ..point.orbit.clone()
         },
         observed,
-        ..given.clone()
-    })
+        ..point.clone()
+    }
 }
 
 /// Outputs that were looked for, with the extremes that were read together with the orbit where these are the same but for rounding: of a number that is
@@ -118,7 +155,7 @@ pub(crate) fn reading(
     point: &Point,
     asked: Asked,
 ) -> Result<Vec<Found>, Error> {
-    let harmonics = HARMONICS * problem.divisor as usize * point.orbit.period;
+    let harmonics = harmonics(problem, point.orbit.period);
     let (reader, _) = read(problem, point, asked, harmonics)?;
     Ok(reader.found())
 }

@@ -135,7 +135,7 @@ fn bad_input_gives_one_message() {
     let failure = run(
         &options(&["--basin", "--out", &nowhere]),
         &Cancel::new(),
-        &mut Progress::new(false),
+        &mut Progress::hidden(),
     );
     assert!(
         failure

@@ -46,7 +46,7 @@ fn run_in(folder: &Folder, prefix: &str, arguments: &[&str]) -> Result<Outcome, 
     let out = folder.file(prefix);
     let arguments = [arguments, &["--out", &out]].concat();
     let never = Cancel::new();
-    run(&options(&arguments), &never, &mut Progress::new(false))
+    run(&options(&arguments), &never, &mut Progress::hidden())
 }
 
 /// Rows of a table of numbers, without its head.

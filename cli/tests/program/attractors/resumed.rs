@@ -63,7 +63,7 @@ fn a_run_that_is_killed() {
         let kept = ["--checkpoint", &checkpoint, "--out", &out];
         let task = [&TO_BE_KILLED[..], &kept].concat();
         let never = Cancel::new();
-        run(&options(&task), &never, &mut Progress::new(false)).expect("basins");
+        run(&options(&task), &never, &mut Progress::hidden()).expect("basins");
     }
 }
 

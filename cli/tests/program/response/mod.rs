@@ -33,7 +33,7 @@ fn options(arguments: &[&str]) -> Options {
 
 fn run_with(arguments: &[&str]) -> Result<Outcome, Failure> {
     let never = Cancel::new();
-    run(&options(arguments), &never, &mut Progress::new(false))
+    run(&options(arguments), &never, &mut Progress::hidden())
 }
 
 /// Enough for a curve, and quick.

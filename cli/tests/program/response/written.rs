@@ -210,7 +210,7 @@ fn an_interrupt_ends_the_branch() {
     assert!(!outcome.complete && outcome.summary.contains("interrupted"));
     assert!(Path::new(&svg).exists());
     // Before there is anything to write.
-    let failure = run(&arguments, &now, &mut Progress::new(false)).expect_err("nothing");
+    let failure = run(&arguments, &now, &mut Progress::hidden()).expect_err("nothing");
     assert_eq!(failure.exit_code(), 3);
     assert!(failure.to_string().starts_with("cancelled"), "{failure}");
 }

@@ -24,7 +24,7 @@ mod finer_rest;
 pub(super) mod minimal_period;
 pub(super) mod overlooked;
 mod plain_outputs;
-mod stretch;
+pub(super) mod stretch;
 
 use nalgebra::{Complex, DMatrix};
 

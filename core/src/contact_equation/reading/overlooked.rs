@@ -80,7 +80,7 @@ impl Sharp {
 
 impl Run<'_> {
     /// Whether nodes of the last pass step over a narrow place of a law.
-    pub(super) fn overlooks(&mut self) -> Option<Overlooked> {
+    pub(in crate::contact_equation) fn overlooks(&mut self) -> Option<Overlooked> {
         let mut sharp = std::mem::take(&mut self.sharp);
         let widest = self.widest(&mut sharp);
         self.sharp = sharp;

@@ -7,13 +7,13 @@ use crate::contact_equation::orbit::motion::Within;
 use crate::time::Stretch;
 
 /// An interval, and room for the states of its modes.
-pub(super) struct Read<'m, 'e> {
+pub(in crate::contact_equation) struct Read<'m, 'e> {
     within: Within<'m, 'e>,
     states: RefCell<Vec<f64>>,
 }
 
 impl<'m, 'e> Read<'m, 'e> {
-    pub(super) fn new(within: Within<'m, 'e>) -> Self {
+    pub(in crate::contact_equation) fn new(within: Within<'m, 'e>) -> Self {
         let states = vec![0.0; within.motion.equations.skeleton.order];
         Self {
             within,

@@ -3,6 +3,7 @@
 mod affine;
 mod both_sides;
 mod closed;
+mod completed;
 mod grazings;
 mod jumps;
 mod kinks;

@@ -1,0 +1,77 @@
+//! Steps from a state, against its motion by integration at a tolerance of 1e-12; and what is read again at folds, against what was read with them.
+
+use std::f64::consts::TAU;
+
+use crate::cancel::Cancel;
+use crate::contact_equation::equations::setting::Setting;
+use crate::contact_equation::march::March;
+use crate::system::{System, Variable};
+use crate::{ContactEquation, FrequencyResponse, time};
+
+crate::oscillator! {
+    /// A mass before a ball on a spring that is a thousand times as stiff, with a pull that grows until the ball lets go.
+    Stiff(x, y) {
+        law ball(g) { g > 0 => 40*g^1.5 + 0.2*g*dot(g), else => 0 }
+        ddot(x) + 0.05*dot(x) + x + 1000*(x - y) = 0.2*cos(omega*t);
+        0.01*ddot(y) + 0.2*dot(y - x) + 1000*(y - x) + ball(y - 0.05) = 0;
+        output squeezed = y - x;
+        output force = force(ball);
+    }
+}
+
+crate::oscillator! {
+    /// Loads in resonance with the linear part, and contacts whose directions turn.
+    Turning(x, y) {
+        law ball(g) { g > 0 => 20*g^1.5, else => 0 }
+        let angle = omega*t;
+        let force = ball(x*cos(angle) + y*sin(angle) - 0.1);
+        ddot(x) + x + force*cos(angle) = 0.1*cos(omega*t);
+        ddot(y) + 0.1*dot(y) + 2*y + force*sin(angle) = 0.1;
+    }
+}
+
+fn steps_are_near(system: &dyn System, omega: f64, state: [f64; 4]) {
+    let shared = system.shared();
+    let cancel = Cancel::new();
+    let setting = Setting::new(&shared, Variable::Omega, Vec::new(), omega, &cancel);
+    let values = setting.values(omega).unwrap();
+    let count = 4096;
+    let mut march = March::new(&setting, &values, TAU / f64::from(count)).unwrap();
+    march.begin(0.0, &state);
+    let mut flow = time::of(system, omega, 1e-12).unwrap();
+    let mut exact = state;
+    let mut found = [0.0; 4];
+    for index in 0..count {
+        assert!(march.step());
+        let ends = [index, index + 1].map(|at| TAU * f64::from(at) / f64::from(count));
+        flow.advance(ends[0], ends[1], &mut exact, None, None)
+            .unwrap();
+        march.write(&mut found);
+        let apart = found.iter().zip(&exact).map(|(a, b)| (a - b).abs());
+        let apart = apart.fold(0.0, f64::max);
+        assert!(apart < 2e-3, "{}: {apart:e}", ends[1]);
+    }
+}
+
+#[test]
+fn steps_follow_the_motion() {
+    steps_are_near(&Stiff {}, 1.1, [0.1, 0.1, 0.3, 0.3]);
+    steps_are_near(&Turning {}, 1.0, [0.3, 0.1, 0.2, -0.3]);
+}
+
+/// The other limb of a fold is within what its value tells.
+#[test]
+fn orbits_at_folds_are_those_of_the_branch() {
+    let request = FrequencyResponse::of(&Stiff {}).by(ContactEquation::new());
+    let branch = request.from(0.3).to(3.0).run().unwrap();
+    assert!(branch.folds().count() > 0);
+    for fold in branch.folds() {
+        let point = &fold.point;
+        let completed = branch.complete(point).unwrap();
+        let pairs = point.observed.outputs.iter();
+        for (known, own) in pairs.zip(&completed.observed.outputs) {
+            let apart = own.apart(known) / known.peak_to_peak();
+            assert!(apart < 1e-6, "{}: {apart:e}", point.value);
+        }
+    }
+}
