@@ -181,6 +181,39 @@ impl Record {
         self.turns.retain(|other| other != turn);
     }
 
+    /// Drops events and turns, each from one on, that are there already: of the same kind and step, and so near in value or not told apart by their
+    /// errors.
+    pub(crate) fn drop_again(&mut self, [first, turn]: [usize; 2], near: f64) {
+        let mut place = first;
+        while place < self.events.len() {
+            let event = &self.events[place];
+            let again = self.events[..place].iter().any(|other| {
+                let apart = (other.point.value - event.point.value).abs();
+                let known = other.error + event.error;
+                (other.kind, other.after) == (event.kind, event.after)
+                    && (apart <= near || known.is_finite() && apart <= known)
+            });
+            if again {
+                self.events.remove(place);
+            } else {
+                place += 1;
+            }
+        }
+        let mut place = turn;
+        while place < self.turns.len() {
+            let here = &self.turns[place];
+            let again = self.turns[..place].iter().any(|other| {
+                (other.kind, other.after) == (here.kind, here.after)
+                    && (other.value - here.value).abs() <= near
+            });
+            if again {
+                self.turns.remove(place);
+            } else {
+                place += 1;
+            }
+        }
+    }
+
     /// Makes places of branch points and Neimark-Sacker bifurcations, from one event on, whose errors are unknown: they are of unknowns that do
     /// not resolve the orbits there, such as few harmonics in a narrow place of a law, and may be theirs alone.
     pub(crate) fn doubt_unknown(&mut self, first: usize) {

@@ -32,6 +32,10 @@ use crate::time::{MotionError, history};
 const SAMPLES: usize = 4096;
 /// Where no pair of states of the linear part turns by a larger angle in a period, an integration is quicker: its steps are as long as that allows.
 const STIFF: f64 = 1000.0;
+/// Where it turns by more, exact steps take longer than an integration too.
+const STIFFEST: f64 = 4e7;
+/// Steps between two looks at whether the search is to end.
+const LOOKED: usize = 256;
 
 /// An orbit with its motion.
 pub(in crate::contact_equation) struct Guess<'g> {
@@ -84,7 +88,8 @@ impl<'g> Guess<'g> {
     ) -> Option<Self> {
         let values = problem.setting.values(point.value)?;
         let rates = values.linear.blocks.iter().map(Block::rate);
-        if rates.fold(0.0, f64::max) * TAU <= STIFF * values.base {
+        let angle = rates.fold(0.0, f64::max) * TAU / values.base;
+        if !(STIFF..=STIFFEST).contains(&angle) {
             return None;
         }
         let mut march = March::new(&problem.setting, &values, TAU / SAMPLES as f64)?;
@@ -95,7 +100,8 @@ impl<'g> Guess<'g> {
         samples[..order].copy_from_slice(&state);
         march.begin(0.0, &state);
         for (index, sample) in samples.chunks_exact_mut(order).enumerate().skip(1) {
-            if !march.step() {
+            let cancelled = index % LOOKED == 0 && problem.asked.cancel.is_cancelled();
+            if cancelled || !march.step() {
                 return None;
             }
             march.write(sample);

@@ -142,7 +142,7 @@ impl Branch {
 
     /// An orbit of this branch with its Fourier series, and everything that is read off. By the balance it has that already; by other methods
     /// its motion is computed once more, and 20 harmonics for each period of the excitation are kept. By the contact equation that is solved again at the
-    /// value, with so many nodes that more change nothing; where it has no solution there, as beside a fold, and by shooting, the motion is integrated. Where that
+    /// value, or along the branch beside a fold, with so many nodes that more change nothing, if its motion is stiff; else, where that finds nothing, and by shooting, the motion is integrated. Where that
     /// does not come back as nearly as the stated error has it, it is the periodic one beside it; extremes of coordinates, and states, stay those of the orbit.
     ///
     /// # Errors

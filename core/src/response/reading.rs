@@ -49,7 +49,8 @@ impl Branch {
         self.read_signal(self.model.source(name)?, point)
     }
 
-    /// Several signals over the period of an orbit, by their names, as [`reading`](Self::reading) has one: its motion is computed once.
+    /// Several signals over the period of an orbit, by their names, as [`reading`](Self::reading) has one: where the contact equation
+    /// finds the orbit again its motion is computed once for all, and else for each.
     ///
     /// ```
     /// use hertzian::FrequencyResponse;

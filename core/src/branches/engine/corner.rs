@@ -33,19 +33,17 @@
 //! (corners of branches); Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (a border that is not the
 //! tangent).
 
-use super::corner_search::{Corner, CornerSearch};
-use super::grazing::Bent;
-use super::grazing::touching;
-use super::grazing_search::{Approach, Reached};
-use super::seen::Seen;
+use super::corner_search::{Beside, Corner, CornerSearch};
+use super::grazing::Gaps;
+use super::grazing_search::Approach;
+use super::grazing_within_step::Steps;
+use super::inside::distance;
 use super::{Engine, Looked};
 use crate::branches::extreme::{Bend, Extreme, passed};
-use crate::branches::point::Event;
-use crate::branches::problem::{BranchProblem, Change, Touch};
+use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Norm;
-use crate::event::{EventKind, Turn};
 use crate::numeric::linear::dot;
 
 /// A corner is looked for as far ahead as so many times the step that failed.
@@ -56,19 +54,37 @@ const SHORTER: f64 = 0.1;
 const FARTHEST: f64 = 10.0;
 /// Extremes that are farther from their level, in units of the gap, are not those that a step fails at.
 const NEAR: f64 = 0.2;
-/// An event that so many of its errors do not tell apart from a touch is one with it.
-const ERRORS: f64 = 3.0;
 /// Kinks where nothing touches are looked for where so short a step fails.
 const SHORTEST: f64 = 1e-3;
 /// Where the slope is unbounded the branch is smooth at last, and steps lead on unless they fail when they are so short.
 const BENDS_WITHIN: f64 = 1e-5;
+/// Where a step leads over a level at which the branch has a corner and none is found, it is made again, so much shorter; down to this length where the force
+/// jumps there.
+const AGAIN: f64 = 0.2;
+const SHORTEST_AGAIN: f64 = 1e-7;
+/// A step that is made again for what is within it is shorter by as much, and by as much if that is not known.
+const LONGEST: f64 = 0.95;
+const HALF: f64 = 0.5;
+/// Behind a corner the first step is at most so many times as long as what the walk goes on behind it.
+const ONWARD: f64 = 2.0;
 /// A walk that ends nearer to a touch than this ends there.
 const PULLED: f64 = 1e-5;
 
+/// A corner, and where the walk goes on behind it.
+pub(super) struct Passed {
+    pub(super) corner: Corner,
+    pub(super) next: Beside,
+    /// How far that is behind it.
+    way: f64,
+    /// The extreme that leads to it, at the point before, and how far that may be.
+    pub(super) extreme: Extreme,
+    pub(super) length: f64,
+}
+
 /// What is tried out on the way.
-struct Tried<'p> {
-    problem: &'p mut dyn BranchProblem,
-    newton: Newton,
+pub(super) struct Tried<'p> {
+    pub(super) problem: &'p mut dyn BranchProblem,
+    pub(super) newton: Newton,
     coupled: bool,
 }
 
@@ -119,7 +135,7 @@ impl Engine {
         problem: &mut dyn BranchProblem,
         next: &CurvePoint,
     ) -> bool {
-        if !problem.force_jumps() {
+        if !problem.corners() {
             return false;
         }
         let last = self.seen.last().map(|seen| seen.point.clone());
@@ -137,8 +153,53 @@ impl Engine {
         let length = norm.length(before.scale, &step.difference());
         let through = passed(&here.extremes, &there.extremes).into_iter();
         let through = through.map(|passage| (length, passage.before));
-        let through: Vec<_> = through.filter(|(_, extreme)| extreme.jumps).collect();
-        !through.is_empty() && self.pass(problem, &before, &through)
+        let bent = through.filter(|(_, extreme)| extreme.bend == Bend::Corner);
+        let through: Vec<_> = bent.collect();
+        if through.is_empty() {
+            if problem.force_jumps() {
+                self.back = self.corner_within(problem, [here, there], length);
+            }
+            return self.back.is_some();
+        }
+        let passed = self.pass(problem, &before, &through);
+        let jumps = through.iter().any(|(_, extreme)| extreme.jumps);
+        let shortest = if jumps { SHORTEST_AGAIN } else { SHORTEST };
+        if !passed && length > shortest {
+            // Another limb, or a touch that is too far to be found from here.
+            self.back = Some((before, AGAIN * length));
+        }
+        passed || self.back.is_some()
+    }
+
+    /// The point before a step so long, and a shorter step from there, if an extreme goes through a level at which the force jumps and back between both
+    /// ends, or may do so: to where it is beyond the level.
+    fn corner_within(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        [here, there]: [Gaps; 2],
+        length: f64,
+    ) -> Option<(CurvePoint, f64)> {
+        let earlier = self.seen.len().checked_sub(2)?;
+        let earlier = self.seen[earlier].point.clone();
+        let ends = [self.gaps_at(problem, &earlier)?, here, there];
+        let ends = ends.map(|mut gaps| {
+            gaps.extremes.retain(|extreme| extreme.jumps);
+            gaps
+        });
+        let before = ends[1].point.clone();
+        let mut newton = Newton::new(problem.equations());
+        let mut steps = Steps::new(&newton, ends)?;
+        steps.divide_last(problem, &mut newton, self.options.newton);
+        problem.count(&newton);
+        let [way, shortest] = match &steps.parts[1][..] {
+            [_, inner, _, ..] => {
+                let way = distance(&newton, &before, &inner.point);
+                [way.min(LONGEST * length), SHORTEST_AGAIN]
+            }
+            // At a corner on the way there the branch leaves the step.
+            _ => [steps.doubt?.min(HALF * length), SHORTEST],
+        };
+        (way > shortest).then_some((before, way))
     }
 
     /// Why a walk ended, with the reason if that is a touch behind which there are no orbits near by.
@@ -174,17 +235,30 @@ impl Engine {
             let mut search = self.search(&mut tried, at, *extreme, *length);
             let corner = search.corner()?;
             let next = search.behind(&corner)?;
-            Some((search.distance(at, &corner.end), corner, next))
+            let distance = search.distance(at, &corner.end);
+            let way = search.distance(&corner.begin, &next.point);
+            Some((
+                distance,
+                Passed {
+                    corner,
+                    next,
+                    way,
+                    length: *length,
+                    extreme: *extreme,
+                },
+            ))
         });
         let nearest = found.min_by(|a, b| a.0.total_cmp(&b.0));
         // Where the equations hold no more at a touch, something else comes first, and the way to it is to be gone in shorter steps.
-        let nearest = nearest.filter(|(_, corner, next)| {
-            let mut both = [&corner.touch.located.point, next].into_iter();
+        let nearest = nearest.filter(|(_, passed)| {
+            let touch = &passed.corner.touch.located.point;
+            let mut both = [touch, &passed.next.point].into_iter();
             both.all(|at| tried.problem.describes(at))
         });
-        if let Some((_, corner, next)) = &nearest {
+        let passed = nearest.map(|(_, passed)| passed);
+        if let Some(passed) = &passed {
             let after = tried.problem.points();
-            self.keep_corner(&mut tried, [at, next], corner, after);
+            self.behind = self.keep_corner(&mut tried, at, passed, after);
             self.seen.clear();
             self.gaps.clear();
             self.touched.clear();
@@ -192,13 +266,13 @@ impl Engine {
             self.refused = true;
         }
         tried.end();
-        let found = nearest.is_some();
-        self.passed = nearest.map(|(_, _, next)| next);
+        let found = passed.is_some();
+        self.passed = passed.map(|passed| (passed.next.point, ONWARD * passed.way));
         found
     }
 
     /// The search for the corner that an extreme leads to, on a way of some length.
-    fn search<'s>(
+    pub(super) fn search<'s>(
         &self,
         tried: &'s mut Tried<'_>,
         from: &'s CurvePoint,
@@ -215,141 +289,6 @@ impl Engine {
                 extreme,
                 farthest: FARTHEST * length,
             },
-        }
-    }
-
-    /// Records the touch at a corner, what happens between the point before it and the corner, and what between it and the point behind.
-    fn keep_corner(
-        &mut self,
-        tried: &mut Tried<'_>,
-        [before, next]: [&CurvePoint; 2],
-        corner: &Corner,
-        after: usize,
-    ) {
-        let Tried {
-            problem, newton, ..
-        } = tried;
-        let Corner {
-            touch, end, begin, ..
-        } = corner;
-        let (value, error) = (touch.located.point.parameter(), touch.error);
-        let known = problem.record().events.len();
-        let places = problem.record().turns.len();
-        // On the side that is clear the branch is smooth up to the touch.
-        let comes_clear = end.u == touch.located.point.u;
-        let mut turns = corner.turns();
-        let mut first = known;
-        let mut from = before;
-        for point in corner.way.iter().chain([end]) {
-            self.events_between(*problem, newton, [from, point], after, |_| true);
-            from = point;
-        }
-        if comes_clear {
-            first = problem.record().events.len();
-        }
-        let is_corner = touch.extreme.bend == Bend::Corner;
-        if !is_corner {
-            turns &= !self.folds_within(*problem, newton, [end, begin], after);
-        }
-        if !comes_clear {
-            first = problem.record().events.len();
-        }
-        // The branch may have turned there.
-        self.falls = None;
-        self.events_between(*problem, newton, [begin, next], after, |_| true);
-        if self.ended.is_some() {
-            return;
-        }
-        let record = problem.record_mut();
-        let mut behind = record.events.split_off(first);
-        if is_corner {
-            // Multipliers are unbounded at the touch: what a series leaves of that beside it is none of its own.
-            drop_beside(&mut record.events, known, value);
-            drop_beside(&mut behind, 0, value);
-            turns ^= drop_places_beside(&mut record.turns, places, [value, error]);
-        }
-        if turns {
-            // A fold and a turn that are not told apart are none.
-            let dropped = drop_fold_beside(&mut record.events, known, [value, error])
-                || drop_fold_beside(&mut behind, 0, [value, error]);
-            turns = !dropped;
-        }
-        if !touch.extreme.begins {
-            let step = Step {
-                before: if comes_clear { before } else { next },
-                next: &touch.located.point,
-            };
-            self.keep_touch(*problem, newton, step, touch, turns, after);
-        }
-        problem.record_mut().events.extend(behind);
-    }
-
-    /// Keeps the touch at a corner.
-    fn keep_touch(
-        &mut self,
-        problem: &mut dyn BranchProblem,
-        newton: &mut Newton,
-        step: Step<'_>,
-        touch: &Reached,
-        turns: bool,
-        after: usize,
-    ) {
-        let mut extremes = Vec::new();
-        problem.extremes(&touch.located.point.u, &mut extremes);
-        let touch = Touch {
-            contacts: touching(&extremes),
-            turns,
-            located: touch.located.clone(),
-            extreme: touch.extreme,
-            error: touch.error,
-            rate: touch.rate,
-            after,
-        };
-        let bent = Bent::kept(problem, newton, step, &touch, &extremes);
-        self.bent.extend(bent);
-    }
-
-    /// What changes its sign between the two sides of a touch that is no corner: slopes and multipliers may be continuous and change
-    /// faster than a way of points shows. Says whether the branch turns there by a fold, and not by its corner.
-    fn folds_within(
-        &mut self,
-        problem: &mut dyn BranchProblem,
-        newton: &mut Newton,
-        sides: [&CurvePoint; 2],
-        after: usize,
-    ) -> bool {
-        let (events, turns) = {
-            let record = problem.record();
-            (record.events.len(), record.turns.len())
-        };
-        let is_zero = |change: &Change| change.kind != EventKind::BranchPoint;
-        self.events_between(problem, newton, sides, after, is_zero);
-        let record = problem.record_mut();
-        let mut place = 0;
-        record.turns.retain(|turn| {
-            place += 1;
-            place <= turns || turn.kind != EventKind::Fold
-        });
-        let mut found = record.events[events..].iter();
-        found.any(|event| event.kind == EventKind::Fold)
-    }
-
-    /// What changes its sign between two points that are not kept as a step.
-    fn events_between(
-        &mut self,
-        problem: &mut dyn BranchProblem,
-        newton: &mut Newton,
-        ends: [&CurvePoint; 2],
-        after: usize,
-        wanted: impl Fn(&Change) -> bool,
-    ) {
-        let [a, b] = ends.map(|point| {
-            let seen = Seen::at(problem, point, self.falls);
-            self.falls = seen.falls;
-            seen
-        });
-        if self.ended.is_none() {
-            self.record_all(problem, newton, [&a, &b], after, wanted);
         }
     }
 }
@@ -381,40 +320,4 @@ fn ahead(problem: &mut dyn BranchProblem, at: &CurvePoint, step: f64) -> Vec<(f6
     }
     ahead.sort_by(|a, b| a.0.total_cmp(&b.0));
     ahead
-}
-
-/// Drops those of the events from one on that their errors, so many times, do not tell apart from a touch at a value.
-fn drop_beside(events: &mut Vec<Event>, first: usize, touch: f64) {
-    let mut place = 0;
-    events.retain(|event| {
-        place += 1;
-        place <= first || (event.point.value - touch).abs() > ERRORS * event.error
-    });
-}
-
-/// Drops the places from one on where something jumps no farther from a corner than the error of its value: it jumps there. Says whether the
-/// slope does so an odd number of times, beside what both sides of the corner tell of it.
-fn drop_places_beside(turns: &mut Vec<Turn>, first: usize, [touch, error]: [f64; 2]) -> bool {
-    let (mut place, mut turned) = (0, false);
-    turns.retain(|turn| {
-        place += 1;
-        let beside = error.is_finite() && (turn.value - touch).abs() <= ERRORS * error;
-        let dropped = place > first && beside;
-        turned ^= dropped && turn.kind == EventKind::Fold;
-        !dropped
-    });
-    turned
-}
-
-/// Drops a fold among the events from one on that errors do not tell apart from a touch. Says whether there was one.
-fn drop_fold_beside(events: &mut Vec<Event>, first: usize, [touch, error]: [f64; 2]) -> bool {
-    let beside = |event: &Event| {
-        let apart = (event.point.value - touch).abs();
-        event.kind == EventKind::Fold && event.error.is_finite() && apart <= error + event.error
-    };
-    let place = events.iter().skip(first).position(beside);
-    if let Some(place) = place {
-        events.remove(first + place);
-    }
-    place.is_some()
 }

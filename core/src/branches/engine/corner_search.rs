@@ -4,16 +4,21 @@ use super::grazing_search::{Approach, Reached, again};
 use crate::branches::extreme::Extreme;
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Step};
+use crate::continuation::locate::inside_over;
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::numeric::linear::dot;
 
 /// The first orbit beyond, by its height, and how near to the touch it is, in units of the walk.
-const FIRST: f64 = 1e-8;
+pub(super) const FIRST: f64 = 1e-8;
 const NEAREST: f64 = 0.01;
 /// The branch bends by no more than this from the touch to where the walk goes on: the cosine.
 const BENDS: f64 = 0.9;
 /// Coming from the side where the level is crossed, the other one is gone to from no higher.
 const ACROSS: f64 = 1e-6;
+/// Or from where the line in the root of the height leads, brought down on the other side by so many times the height, where no iterate crosses the level
+/// again, and by this at the most.
+const DEEPER: [f64; 5] = [1.0, 10.0, 1e2, 1e3, 1e4];
+const DEEPEST: f64 = 0.05;
 /// Each of the points on the way to a corner is so much nearer to the level than the one before.
 const WAY: f64 = 0.1;
 /// Or by less, where the branch bends by more than a right angle between two of them: up to this.
@@ -32,9 +37,10 @@ const ORBITS: usize = 6;
 const MET: f64 = 3.0;
 
 /// A solution whose extreme has a height.
-struct Beside {
-    point: CurvePoint,
-    extreme: Extreme,
+#[derive(Clone)]
+pub(super) struct Beside {
+    pub(super) point: CurvePoint,
+    pub(super) extreme: Extreme,
 }
 
 /// A touch with the branch on both sides of it. All tangents point forwards.
@@ -44,8 +50,10 @@ pub(super) struct Corner {
     pub(super) end: CurvePoint,
     /// Where it goes on begins here.
     pub(super) begin: CurvePoint,
-    /// Points on the way to its end, where the branch bends.
-    pub(super) way: Vec<CurvePoint>,
+    /// The extreme at that of them which is beyond the level.
+    pub(super) crossed: Extreme,
+    /// Orbits on the way to its end, where the branch bends.
+    pub(super) way: Vec<Beside>,
     /// One if extremes rise forwards, or minus one.
     forwards: f64,
 }
@@ -82,7 +90,10 @@ impl CornerSearch<'_> {
             -forwards
         };
         let first = self.beside(&touch.located.point, touch.extreme, other * FIRST)?;
-        let mut crossed = first.point;
+        let Beside {
+            point: mut crossed,
+            extreme: beyond,
+        } = first;
         direct(&mut crossed, forwards);
         let apart = self.distance(&touch.located.point, &crossed);
         let clear = touch.located.point.clone();
@@ -98,6 +109,7 @@ impl CornerSearch<'_> {
             touch,
             end,
             begin,
+            crossed: beyond,
             way: Vec::new(),
             forwards,
         };
@@ -107,60 +119,124 @@ impl CornerSearch<'_> {
         if !extreme.is_clear() {
             corner.way = self.way(&corner, extreme.above)?;
         }
-        let last = corner.way.last().unwrap_or(at);
+        let last = corner.way.last().map_or(at, |last| &last.point);
         (self.bend(last, &corner.end) > 0.0).then_some(corner)
     }
 
     /// The orbit that touches, from the side where the level is not crossed.
     fn touch(&mut self, forwards: f64) -> Option<Reached> {
-        let Approach {
-            from: at,
-            extreme,
-            farthest,
-        } = self.approach;
-        let mut touch = if extreme.is_clear() {
+        let mut touch = if self.approach.extreme.is_clear() {
             self.approach
                 .close_in(self.problem, self.newton, self.options)?
         } else {
-            // Down to the level, to the side where it is clear, and back.
-            let mut last = Beside {
-                point: at.clone(),
-                extreme,
-            };
-            while last.extreme.above.abs() > ACROSS {
-                let lower = WAY * last.extreme.above;
-                last = self.beside(&last.point, last.extreme, lower)?;
-            }
-            let height = last.extreme.above.abs();
-            let across = self.beside(&last.point, last.extreme, forwards * height)?;
-            let approach = Approach {
-                from: &across.point,
-                extreme: across.extreme,
-                farthest,
-            };
-            approach.close_in(self.problem, self.newton, self.options)?
+            self.touch_from_beyond(forwards)?
         };
         direct(&mut touch.located.point, forwards);
         Some(touch)
     }
 
+    /// The same from where the level is crossed: down to it, and to the side where it is clear.
+    fn touch_from_beyond(&mut self, forwards: f64) -> Option<Reached> {
+        let Approach {
+            from: at,
+            extreme,
+            farthest,
+        } = self.approach;
+        let mut last = Beside {
+            point: at.clone(),
+            extreme,
+        };
+        while last.extreme.above.abs() > ACROSS {
+            let lower = WAY * last.extreme.above;
+            let next = self.lower(&last, lower);
+            let next = next.or_else(|| self.beside(&last.point, last.extreme, lower));
+            let Some(next) = next else {
+                break;
+            };
+            last = next;
+        }
+        let height = last.extreme.above.abs();
+        let close_in = |search: &mut Self, from: &CurvePoint, extreme: Extreme| {
+            let approach = Approach {
+                from,
+                extreme,
+                farthest,
+            };
+            approach.close_in(search.problem, search.newton, search.options)
+        };
+        let across = self.beside(&last.point, last.extreme, forwards * height);
+        let found = across.and_then(|across| close_in(self, &across.point, across.extreme));
+        found.or_else(|| {
+            DEEPER.into_iter().find_map(|times| {
+                let depth = (times * height).min(DEEPEST);
+                let from = self.straight_to_touch(&last, forwards * depth)?;
+                close_in(self, &from.point, from.extreme)
+            })
+        })
+    }
+
+    /// Where an orbit beyond the level leads along its tangent to a part of its root of the height, in which it is smooth, (2) of
+    /// [`corner`](super::corner): as `h` goes at the rate `h'` of the arc length, by `2 (1 - part) h / h'`.
+    fn along_root(&mut self, from: &Beside, part: f64) -> Option<Beside> {
+        let Beside { point, extreme } = from;
+        let mut form = vec![0.0; point.u.len()];
+        let range = point.scale.parameter;
+        if !self
+            .problem
+            .extreme_form(&point.u, extreme, range, &mut form)
+        {
+            return None;
+        }
+        let way = 2.0 * (1.0 - part) * extreme.above / dot(&form, &point.tangent);
+        // Where it hardly rises along the branch it leads anywhere.
+        let leads = way.abs() <= self.approach.farthest;
+        if !leads {
+            return None;
+        }
+        let mut u = point.u.clone();
+        rise(&mut u, &point.tangent, -way);
+        let extreme = again(self.problem, &u, extreme)?;
+        let point = CurvePoint { u, ..point.clone() };
+        Some(Beside { point, extreme })
+    }
+
+    /// The solution at a lower height beyond the level.
+    fn lower(&mut self, from: &Beside, height: f64) -> Option<Beside> {
+        let part = (height / from.extreme.above).sqrt();
+        let guess = self.along_root(from, part)?;
+        self.solution(&from.point, guess.point.u, guess.extreme, height)
+    }
+
+    /// Near the touch, where an orbit beyond the level leads in the root of the height, and from there to a height on the other side.
+    fn straight_to_touch(&mut self, from: &Beside, height: f64) -> Option<Beside> {
+        let Beside { mut point, extreme } = self.along_root(from, 0.0)?;
+        let mut form = vec![0.0; point.u.len()];
+        let range = point.scale.parameter;
+        let known = self
+            .problem
+            .extreme_form(&point.u, &extreme, range, &mut form);
+        rise(
+            &mut point.u,
+            &form,
+            (height - extreme.above) / dot(&form, &form),
+        );
+        let extreme = again(self.problem, &point.u, &extreme)?;
+        (known && extreme.is_clear()).then_some(Beside { point, extreme })
+    }
+
     /// Points between where the search comes from, at a height, and the end of the branch at a corner: beyond the level it bends with the root
     /// of the height. None if it turns back on the way.
-    fn way(&mut self, corner: &Corner, height: f64) -> Option<Vec<CurvePoint>> {
-        let touch = &corner.touch;
-        let mut way: Vec<CurvePoint> = Vec::new();
+    fn way(&mut self, corner: &Corner, height: f64) -> Option<Vec<Beside>> {
+        let mut way: Vec<Beside> = Vec::new();
         let (mut from, mut next) = (height, WAY * height);
         while next.abs() > FIRST / WAY {
-            let Some(Beside { mut point, .. }) =
-                self.beside(&touch.located.point, touch.extreme, next)
-            else {
+            let Some(beside) = self.at_height(corner, next) else {
                 next *= WAY;
                 continue;
             };
-            direct(&mut point, corner.forwards);
-            let last = way.last().unwrap_or(self.approach.from);
-            if self.bend(last, &point) > 0.0 {
-                way.push(point);
+            let last = way.last().map_or(self.approach.from, |last| &last.point);
+            if self.bend(last, &beside.point) > 0.0 {
+                way.push(beside);
                 (from, next) = (next, WAY * next);
             } else if next / from < CLOSEST {
                 next = from * (next / from).sqrt();
@@ -172,26 +248,44 @@ impl CornerSearch<'_> {
     }
 
     /// The cosine of the angle between tangents.
-    fn bend(&self, a: &CurvePoint, b: &CurvePoint) -> f64 {
+    pub(super) fn bend(&self, a: &CurvePoint, b: &CurvePoint) -> f64 {
         let norm = self.newton.norm();
         norm.product(a.scale, &a.tangent, &b.tangent) / norm.length(a.scale, &b.tangent)
     }
 
-    /// A point of the branch some way behind a corner.
-    pub(super) fn behind(&mut self, corner: &Corner) -> Option<CurvePoint> {
-        let (touch, forwards) = (&corner.touch, corner.forwards);
-        let from = &touch.located.point;
+    /// An orbit of the branch some way behind a corner.
+    pub(super) fn behind(&mut self, corner: &Corner) -> Option<Beside> {
+        let from = &corner.touch.located.point;
         let apart = self.distance(from, &corner.begin);
         HEIGHTS.into_iter().find_map(|height| {
-            let beside = self.beside(from, touch.extreme, forwards * height)?;
-            let mut point = beside.point;
-            direct(&mut point, forwards);
-            let distance = self.distance(from, &point);
+            let beside = self.at_height(corner, corner.forwards * height)?;
+            let point = &beside.point;
+            let distance = self.distance(from, point);
             let [a, b] = self.range;
             let within = (point.parameter() - a) * (point.parameter() - b) < 0.0;
             let near = distance <= FAR && apart <= NEARER * distance;
-            (within && near && self.bend(&corner.begin, &point) > BENDS).then_some(point)
+            (within && near && self.bend(&corner.begin, point) > BENDS).then_some(beside)
         })
+    }
+
+    /// The orbit beside a corner whose extreme has a height. Its tangent points forwards.
+    pub(super) fn at_height(&mut self, corner: &Corner, height: f64) -> Option<Beside> {
+        let touch = &corner.touch;
+        let mut beside = self.beside(&touch.located.point, touch.extreme, height)?;
+        direct(&mut beside.point, corner.forwards);
+        Some(beside)
+    }
+
+    /// An orbit at a part of the way between two others. Its tangent points along that way.
+    pub(super) fn between(&mut self, ends: [&Beside; 2], part: f64) -> Option<Beside> {
+        let step = Step {
+            before: &ends[0].point,
+            next: &ends[1].point,
+        };
+        let equations = self.problem.equations();
+        let point = inside_over(equations, self.newton, step, part, self.options)?;
+        let extreme = again(self.problem, &point.u, &ends[0].extreme)?;
+        Some(Beside { point, extreme })
     }
 
     /// How far apart two points are.

@@ -19,7 +19,7 @@ use crate::branches::extreme::{Extreme, Passage};
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::Located;
-use crate::continuation::newton::{Border, Newton, NewtonOptions};
+use crate::continuation::newton::{Border, Converged, Newton, NewtonOptions};
 use crate::numeric::linear::dot;
 
 /// The extreme is brought so close to its level, in units of the gap, from its side of it.
@@ -31,6 +31,8 @@ const NEARER: f64 = 0.5;
 const ROUNDED: f64 = 3.0;
 /// Each orbit is so much closer than the one before, so that none of them crosses the level on the way.
 const CLOSER: f64 = 0.03;
+/// Newton's method goes on at the touch until its first update is no longer than this, or not so much shorter than the one before.
+const EXACT: f64 = 1e-12;
 /// Orbits on the way, at most.
 const ORBITS: usize = 16;
 
@@ -116,6 +118,13 @@ pub(super) struct Reached {
     pub(super) rate: f64,
 }
 
+/// Unknowns at which an extreme touches, found by updates of which the first was so long.
+struct Touching {
+    u: Vec<f64>,
+    extreme: Extreme,
+    update: f64,
+}
+
 impl Approach<'_> {
     /// The orbit whose extreme reaches its level, by Newton's method with (1) as its border; `None` if that leads elsewhere.
     pub(super) fn close_in(
@@ -131,19 +140,25 @@ impl Approach<'_> {
         let mut u = from.u.clone();
         let mut form = vec![0.0; u.len()];
         let mut before = f64::INFINITY;
+        // What touches, and how long the first update was that led there.
+        let mut touching: Option<Touching> = None;
         for _ in 0..ORBITS {
             let aim = extreme.above.signum() * (CLOSER * extreme.above.abs()).max(AIM);
             if !problem.extreme_form(&u, &extreme, scale.parameter, &mut form) {
-                return None;
+                break;
             }
             let border = Border {
                 row: &form,
                 value: dot(&form, &u) + aim - extreme.above,
             };
-            newton
-                .correct(problem.equations(), &mut u, border, scale, options)
-                .ok()?;
-            extreme = again(problem, &u, &extreme)?;
+            let corrected = newton.correct(problem.equations(), &mut u, border, scale, options);
+            let Ok(Converged { first, .. }) = corrected else {
+                break;
+            };
+            let Some(found) = again(problem, &u, &extreme) else {
+                break;
+            };
+            extreme = found;
             let height = extreme.above.abs();
             // As near as rounding allows, if that is near enough.
             let nearer = height > ROUNDED * AIM && height < NEARER * before;
@@ -151,18 +166,27 @@ impl Approach<'_> {
             if nearer || height > TOUCHES {
                 continue;
             }
-            return self.reached(problem, newton, u, extreme);
+            // It was solved for as well as an orbit of the branch, and a touch is to be known better. Where the force jumps, an iterate beyond the
+            // level has a matrix that is almost unbounded, and updates with it are short whatever is left: the first one, from this side, tells.
+            let last = touching.as_ref().map_or(f64::INFINITY, |last| last.update);
+            touching = Some(Touching {
+                u: u.clone(),
+                extreme,
+                update: first,
+            });
+            if first <= EXACT || first >= NEARER * last {
+                break;
+            }
         }
-        None
+        self.reached(problem, newton, touching?)
     }
 
-    /// The orbit that was reached, unless it is too far away.
+    /// The orbit that was reached and that an update so long has led to, unless it is too far away.
     fn reached(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
-        u: Vec<f64>,
-        extreme: Extreme,
+        Touching { u, extreme, update }: Touching,
     ) -> Option<Reached> {
         let (from, scale) = (self.from, self.from.scale);
         let pairs = u.iter().zip(&from.u);
@@ -174,7 +198,9 @@ impl Approach<'_> {
             return None;
         }
         let rate = tangent[tangent.len() - 1].abs();
-        let error = ROUNDED * extreme.above.abs() * rate + newton.left_in_parameter();
+        // The first update that led there is what it was off by before, and hardly more than that is left.
+        let left = newton.left_in_parameter().max(update * scale.parameter);
+        let error = ROUNDED * extreme.above.abs() * rate + left;
         let length = newton.norm().length(scale, &tangent);
         for t in &mut tangent {
             *t /= length;

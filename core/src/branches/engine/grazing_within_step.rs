@@ -23,6 +23,19 @@ pub(super) struct Steps {
     places: [f64; 3],
     /// The ends of the parts of either.
     pub(super) parts: [Vec<Gaps>; 2],
+    /// The least way behind the beginning of one of them at which an extreme may still be on the other side of its level: no orbit was
+    /// found there, or too many would have to be looked at.
+    pub(super) doubt: Option<f64>,
+}
+
+/// What is known of an extreme between both ends of a step.
+enum Told {
+    /// It is on the other side of its level at this orbit.
+    Across(Gaps),
+    /// It stays.
+    Stays,
+    /// It may be there at this place.
+    Doubt(f64),
 }
 
 impl Steps {
@@ -38,6 +51,7 @@ impl Steps {
             ends,
             places,
             parts,
+            doubt: None,
         })
     }
 
@@ -48,12 +62,32 @@ impl Steps {
         newton: &mut Newton,
         options: NewtonOptions,
     ) {
+        self.divide_some(problem, newton, options, &[1, 0]);
+    }
+
+    /// The same of the last one alone.
+    pub(super) fn divide_last(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        options: NewtonOptions,
+    ) {
+        self.divide_some(problem, newton, options, &[1]);
+    }
+
+    fn divide_some(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        options: NewtonOptions,
+        which: &[usize],
+    ) {
         let middle = self.ends[1].extremes.clone();
         for extreme in &middle {
             let Some(heights) = self.heights(extreme) else {
                 continue;
             };
-            for step in [1, 0] {
+            for &step in which {
                 let inner = &self.parts[step][1..self.parts[step].len() - 1];
                 let is_hidden = |gaps: &Gaps| is_across(extreme, &gaps.extremes);
                 if inner.iter().any(is_hidden) {
@@ -68,8 +102,14 @@ impl Steps {
                     range: [self.places[step], self.places[step + 1]],
                     options,
                 };
-                let Some(found) = search.across(problem, newton, &heights) else {
-                    continue;
+                let found = match search.across(problem, newton, &heights) {
+                    Told::Across(found) => found,
+                    Told::Stays => continue,
+                    Told::Doubt(place) => {
+                        let way = place - self.places[step];
+                        self.doubt = Some(self.doubt.map_or(way, |doubt| doubt.min(way)));
+                        continue;
+                    }
                 };
                 let along = ArcLength::from(newton, search.whole.before);
                 let place = |gaps: &Gaps| along.at(&gaps.point.u);
@@ -125,22 +165,38 @@ impl Search<'_> {
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         heights: &[Height; 3],
-    ) -> Option<Gaps> {
+    ) -> Told {
         let [from, to] = self.range;
         let mut known = heights.to_vec();
+        let close = CLOSE * (to - from);
         for _ in 0..LOOKS {
-            let place = in_doubt(&known, self.range, CLOSE * (to - from), false)?;
+            let Some(place) = in_doubt(&known, self.range, close, false) else {
+                return Told::Stays;
+            };
             let part = (place - from) / (to - from);
-            let point = inside(problem.equations(), newton, self.whole, part, self.options)?;
-            let gaps = Gaps::at(problem, &point)?;
-            let there = self.extreme.nearest(&gaps.extremes)?;
-            let height = self.extreme.above.signum() * there.above;
+            let Some((gaps, height)) = self.look(problem, newton, part) else {
+                return Told::Doubt(place);
+            };
             if height < 0.0 {
-                return Some(gaps);
+                return Told::Across(gaps);
             }
-            let next = known.iter().position(|other| other.place > place)?;
+            let next = known.partition_point(|other| other.place <= place);
             known.insert(next, Height { place, height });
         }
-        None
+        in_doubt(&known, self.range, close, false).map_or(Told::Stays, Told::Doubt)
+    }
+
+    /// The orbit at a part of the step, and how far the extreme is from its level there, on the side of both ends.
+    fn look(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        part: f64,
+    ) -> Option<(Gaps, f64)> {
+        let point = inside(problem.equations(), newton, self.whole, part, self.options)?;
+        let gaps = Gaps::at(problem, &point)?;
+        let there = self.extreme.nearest(&gaps.extremes)?;
+        let height = self.extreme.above.signum() * there.above;
+        Some((gaps, height))
     }
 }

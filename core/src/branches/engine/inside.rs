@@ -41,7 +41,7 @@ impl Engine {
     ) -> Vec<Seen> {
         let mut parts = self.through_narrow(problem, newton, [a, b]);
         self.doubted = parts.len() > 2;
-        self.divide_parts(problem, newton, &mut parts);
+        self.divide_parts(problem, newton, &mut parts, 0);
         if let Some(earlier) = earlier {
             let mut looks = Vec::new();
             for sought in sought_from(problem, &parts[0]) {
@@ -109,12 +109,14 @@ impl Engine {
         }
     }
 
-    /// Divides parts of one step where a function passes zero twice in one of them, as far as three of their ends tell.
-    fn divide_parts(
+    /// Divides parts of one step where a function passes zero twice in one of them, as far as three of their ends tell. So many of the first are no
+    /// parts of it, and stay as they are.
+    pub(super) fn divide_parts(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         parts: &mut Vec<Seen>,
+        before: usize,
     ) {
         let mut middle = 1;
         while middle + 1 < parts.len() {
@@ -123,8 +125,8 @@ impl Engine {
                 let points = [middle - 1, middle, middle + 1].map(|place| &parts[place]);
                 let (found, place) = match self.dip(problem, newton, points, &mut looks, sought) {
                     Some(Dip::Last(found)) => (found, middle + 1),
-                    Some(Dip::Before(found)) => (found, middle),
-                    None => continue,
+                    Some(Dip::Before(found)) if middle > before => (found, middle),
+                    Some(Dip::Before(_)) | None => continue,
                 };
                 parts.insert(place, found);
                 middle += 1;
@@ -135,54 +137,17 @@ impl Engine {
     }
 
     /// Notes for which test functions the parts of a step show what its ends do not.
-    fn note_divided(&mut self, problem: &dyn BranchProblem, parts: &[Seen], after: usize) {
+    pub(super) fn note_divided(
+        &mut self,
+        problem: &dyn BranchProblem,
+        parts: &[Seen],
+        after: usize,
+    ) {
         for test in tests(problem) {
             if is_hidden(problem, parts, test) && !self.divided.contains(&(after, test)) {
                 self.divided.push((after, test));
             }
         }
-    }
-
-    /// Records what an orbit shows inside of a step and its ends do not.
-    fn record_pair(
-        &mut self,
-        problem: &mut dyn BranchProblem,
-        newton: &mut Newton,
-        parts: &[Seen],
-        after: usize,
-    ) {
-        let known = self.divided.clone();
-        let hidden: Vec<Test> = tests(problem)
-            .filter(|test| is_hidden(problem, parts, *test) && !known.contains(&(after, *test)))
-            .collect();
-        let wanted = |change: &Change| hidden.contains(&change.test);
-        for pair in parts.windows(2) {
-            self.record_all(problem, newton, [&pair[0], &pair[1]], after, wanted);
-            if self.ended.is_some() {
-                return;
-            }
-        }
-        self.note_divided(problem, parts, after);
-    }
-
-    /// Records what orbits within a step show, and others between these, and its ends do not.
-    pub(super) fn record_between(
-        &mut self,
-        problem: &mut dyn BranchProblem,
-        newton: &mut Newton,
-        [a, b]: [Seen; 2],
-        inner: Vec<Seen>,
-        after: usize,
-    ) {
-        let mut parts = vec![a, b];
-        for seen in inner {
-            insert(newton, &mut parts, seen);
-        }
-        if !tests(problem).any(|test| is_hidden(problem, &parts, test)) {
-            return;
-        }
-        self.divide_parts(problem, newton, &mut parts);
-        self.record_pair(problem, newton, &parts, after);
     }
 
     /// An orbit inside one of two steps where a test function has the other sign than at all their ends.
@@ -402,7 +367,7 @@ pub(super) fn noise_of(problem: &dyn BranchProblem, test: Test, at: &Seen) -> f6
 }
 
 /// All test functions.
-fn tests(problem: &dyn BranchProblem) -> impl Iterator<Item = Test> + use<> {
+pub(super) fn tests(problem: &dyn BranchProblem) -> impl Iterator<Item = Test> + use<> {
     let watched = (0..problem.watched().len()).map(Test::Watched);
     [Test::Slope].into_iter().chain(watched)
 }
@@ -569,7 +534,7 @@ pub(super) fn is_on_way(newton: &Newton, step: Step<'_>, found: &CurvePoint) -> 
 }
 
 /// Puts an orbit to its place among the parts of a step: where the way by it is hardly longer. No arc length tells that where the branch bends.
-fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
+pub(super) fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
     let scale = parts[0].point.scale;
     let apart = |a: &Seen, b: &Seen| {
         let pairs = a.point.u.iter().zip(&b.point.u);

@@ -25,7 +25,9 @@
 
 mod back;
 mod behind_touch;
+mod beyond_corner;
 mod corner;
+mod corner_events;
 mod corner_search;
 mod counted;
 mod explained;
@@ -39,6 +41,7 @@ mod leap;
 mod meeting;
 mod narrow;
 mod seen;
+mod shown_between;
 #[cfg(test)]
 mod tests;
 mod walk;
@@ -96,8 +99,10 @@ struct Engine {
     decided: Option<usize>,
     /// Where a corner was looked for last, and how far ahead.
     looked: Option<Looked>,
-    /// A point behind a corner, to go on from.
-    passed: Option<CurvePoint>,
+    /// A point behind a corner, to go on from, and the longest step from there.
+    passed: Option<(CurvePoint, f64)>,
+    /// An orbit between that corner and this point, if the branch goes on there: the point has none before it.
+    behind: Option<Seen>,
     /// The point before the last one, to go on from in a step of this length, since the last one is not the next on the branch.
     back: Option<(CurvePoint, f64)>,
     /// The branch point that the last step passed, which is made again.
@@ -255,6 +260,7 @@ impl Engine {
             decided: None,
             looked: None,
             passed: None,
+            behind: None,
             back: None,
             joint: None,
             end: None,
@@ -323,6 +329,8 @@ impl Engine {
     /// The walk where it was halted, in other unknowns. What happened in the last step cannot be looked at where its first point has no place in them.
     fn remapped(&mut self, problem: &mut dyn BranchProblem, halted: &Halted) -> Box<Halted> {
         let mut resized = Box::new(halted.clone());
+        // It has no place in other unknowns.
+        self.behind = None;
         let before = halted.previous.as_ref().filter(|_| problem.seeks_touches());
         let gaps = before.and_then(|before| self.gaps_at(problem, before));
         problem.remap(&mut resized);
@@ -345,8 +353,9 @@ impl Engine {
     /// Where the walk goes on, if not from where it was halted: behind a corner, or from the point before the last one.
     fn moved(&mut self, halted: &Halted) -> Option<Start> {
         self.displaced = None;
-        let moved = if let Some(passed) = self.passed.take() {
-            halted.clone().moved_to(passed, self.options.steps.initial)
+        let moved = if let Some((passed, longest)) = self.passed.take() {
+            let step = longest.min(self.options.steps.initial);
+            halted.clone().moved_to(passed, step)
         } else {
             let (point, step) = self.back.take()?;
             halted.clone().back_to(point, step)
@@ -379,6 +388,10 @@ impl Engine {
             }
             Read::ResizeBehind => self.resizes = true,
             Read::Kept => {}
+        }
+        let behind = self.behind.take();
+        if let Some(behind) = behind.filter(|behind| behind.point.u.len() == at.u.len()) {
+            self.see(behind);
         }
         self.see(Seen::at(problem, at, self.falls));
         Continue::Continue(())
@@ -415,7 +428,7 @@ impl Engine {
             }
         }
         let after = problem.points() - 1;
-        let turned = self.events(problem, newton, step);
+        let turned = self.events(problem, newton, step, after);
         if self.ended.is_none() {
             self.touches(problem, newton, step, turned, after);
             self.place_turns(problem);
@@ -432,14 +445,15 @@ impl Engine {
         }
     }
 
-    /// Locates what happened in a step, and in the one before where that shows only now. Says where the branch turned without a fold.
+    /// Locates what happened in a step behind so many points, and in the one before where that shows only now. Says where the branch turned without
+    /// a fold.
     fn events(
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         step: Step<'_>,
+        after: usize,
     ) -> Option<Turn> {
-        let after = problem.points() - 1;
         let earlier = self.complete(problem, step);
         let ends = [self.seen.len() - 2, self.seen.len() - 1];
         let ends = ends.map(|place| self.seen[place].clone());

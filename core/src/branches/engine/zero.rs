@@ -3,7 +3,7 @@
 use super::Engine;
 use super::inside::step_between;
 use super::seen::Seen;
-use crate::branches::extreme::{Bend, passed};
+use crate::branches::extreme::{Bend, crossings, passed};
 use crate::branches::problem::{BranchProblem, Change, Root, Test, TestValue, Zero, ZeroOutcome};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::{CurvePoint, Step, Stop};
@@ -166,7 +166,7 @@ impl<'s> Search<'s> {
                 kept = self.search(problem, &mut newton, false).0;
                 problem.count(&newton);
                 problem.couple_fully_once(false);
-            } else if !problem.corners() {
+            } else if !self.may_jump(problem) {
                 kept = self.search(problem, newton, true).0;
             }
         }
@@ -235,8 +235,10 @@ impl<'s> Search<'s> {
             ..self.options
         };
         let exact = Self { options, ..*self }.root(problem, newton);
-        let exact = exact.filter(|exact| problem.vanishes(self.change, &exact.located));
-        Some(exact.map_or((root, false), |exact| (exact, true)))
+        Some(exact.map_or((root, false), |exact| {
+            let vanishes = problem.vanishes(self.change, &exact.located);
+            (exact, vanishes)
+        }))
     }
 
     /// What became of the zero, and where the function jumps instead. It may be `steep` where no level is a corner.
@@ -278,13 +280,30 @@ impl<'s> Search<'s> {
         if !(located.jump > 0.0 && located.jump <= STEEP * a.min(b)) {
             return false;
         }
-        if !problem.corners() {
+        if steep || !problem.corners() {
             return steep;
         }
         let mut extremes = Vec::new();
         let known = problem.extremes(&located.point.u, &mut extremes);
         let sharpest = extremes.iter().map(|extreme| extreme.bend).max();
         known && sharpest == Some(Bend::Steep)
+    }
+
+    /// Whether test functions may jump between both ends: an extreme goes through a level at which the branch may have a corner, or it is not
+    /// known whether one does.
+    fn may_jump(&self, problem: &mut dyn BranchProblem) -> bool {
+        if !problem.corners() {
+            return false;
+        }
+        let Step { before, next } = self.step;
+        let (mut here, mut there) = (Vec::new(), Vec::new());
+        if !(problem.extremes(&before.u, &mut here) && problem.extremes(&next.u, &mut there)) {
+            return true;
+        }
+        for extremes in [&mut here, &mut there] {
+            extremes.retain(|extreme| extreme.bend == Bend::Corner);
+        }
+        !passed(&here, &there).is_empty() || crossings(&here) != crossings(&there)
     }
 
     /// Whether branches cross there, and next to nothing is left of the test function: it is interpolated, from orbits that are known the less the

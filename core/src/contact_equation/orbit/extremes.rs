@@ -46,6 +46,8 @@ pub(super) const PART: f64 = 0.1;
 const FEW: usize = 1;
 /// Two extremes of a gap as near as this are one.
 const SEEN_TWICE: f64 = 1e-6;
+/// Phases that are nearer to each other are not told apart by what lies between them, as a part of them.
+const CLOSEST: f64 = 1e-14;
 /// The rate of a gap is looked at between samples where it may come as near to zero, in parts of the larger one of both, so often at most.
 const DIPS: f64 = 0.1;
 const HALVINGS: usize = 4;
@@ -438,7 +440,10 @@ impl Scan<'_, '_, '_> {
         } else {
             cubic.goes_on(fast)
         };
-        if !fast.is_none() && !sure {
+        // Of motions that grow beyond all bounds nothing is sure, however near phases are.
+        let divides = next.x - before.x > CLOSEST * next.x.abs().max(1.0);
+        let known = before.rate.is_finite() && next.rate.is_finite();
+        if !fast.is_none() && !sure && divides && known {
             self.halve(before, next, 0.5, halvings);
             return;
         }

@@ -243,6 +243,9 @@ impl Between<'_> {
             };
             let mut own = Vec::new();
             scales.narrow_along(active.piece, way, &mut own);
+            if own.len() > PLACES {
+                own.retain(|place| (0.0..=1.0).contains(&place.at));
+            }
             // So many of one contact are the rounding of an operand that rests.
             if own.len() <= PLACES {
                 found.append(&mut own);

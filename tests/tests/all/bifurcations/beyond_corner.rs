@@ -1,0 +1,126 @@
+//! Events between a touch at which the force jumps and the next point of the branch.
+//!
+//! The values are of motions in closed form from switch to switch, the exponential of the matrix of each piece, with the derivative of the map over a
+//! period and its jumps at switches: `det(M + I) = 0` by the secant method in the frequency, about an orbit of Newton's method on the state.
+
+use hertzian::{ContactEquation, EventKind, FrequencyResponse, Shooting, Stop, System};
+
+hertzian::oscillator! {
+    /// Between two stops whose forces begin with a jump.
+    Preloads(x) {
+        param drive;
+        param p;
+        law stop(gap) { gap >= 0 => p + 4*gap, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x - 1) - stop(-x - 1.2) = drive*cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    /// Two masses, one of them beside a stop with a preload.
+    Preloaded(x, y) {
+        param drive;
+        param preload;
+        law stop(gap) { gap >= 0 => preload + 8*gap, else => 0 }
+        ddot(x) + 0.04*dot(x) + x + 0.3*(x - y) + stop(x - 1) = drive*cos(omega*t);
+        0.5*ddot(y) + 0.04*dot(y) + 0.6*y + 0.3*(y - x) = 0;
+    }
+}
+
+/// Both ways, by both methods: the doublings within a window are those that are known, and the branch goes on to the end.
+fn assert_doublings(system: &dyn System, range: [f64; 2], window: [f64; 2], expected: &[f64]) {
+    let [low, high] = range;
+    for [from, to] in [[low, high], [high, low]] {
+        let request = FrequencyResponse::of(system).from(from).to(to);
+        let moved = request.clone().by(Shooting::new()).run().unwrap();
+        let solved = request.by(ContactEquation::new()).run().unwrap();
+        for branch in [moved, solved] {
+            assert_eq!(branch.stopped, Stop::ReachedEnd);
+            assert_eq!(branch.turns, []);
+            let doublings = branch.events(EventKind::PeriodDoubling);
+            let values = doublings.map(|event| event.point.value);
+            let mut values: Vec<f64> = values
+                .filter(|value| (window[0]..window[1]).contains(value))
+                .collect();
+            values.sort_by(f64::total_cmp);
+            assert_eq!(values.len(), expected.len(), "{from} {to}: {values:?}");
+            for (value, expected) in values.iter().zip(expected) {
+                let error = (value - expected).abs();
+                assert!(error < 2e-12, "{value}: {error:.1e}");
+            }
+        }
+    }
+}
+
+/// The touch is at 0.83012: two doublings on its side where the stop is reached, within one step.
+#[test]
+fn two_doublings_beside_a_touch_are_found() {
+    let exact = [
+        0.842_243_884_976_7,
+        0.856_384_604_605_3,
+        0.907_323_132_899_3,
+    ];
+    let system = &Preloads {
+        drive: 0.6031,
+        p: 0.164,
+    };
+    assert_doublings(system, [0.4, 2.2], [0.82, 1.0], &exact);
+}
+
+/// The other stop is touched at 0.98197. From the left, a step across it fails to find the touch at first.
+#[test]
+fn a_touch_that_is_far_within_a_step_hides_no_doubling() {
+    let system = &Preloads {
+        drive: 0.2302,
+        p: 0.1604,
+    };
+    assert_doublings(system, [0.4, 2.2], [0.95, 1.0], &[0.983_741_590_762_3]);
+}
+
+/// The touch is at 0.95897.
+#[test]
+fn two_doublings_of_two_masses_beside_a_touch_are_found() {
+    let exact = [
+        0.960_284_358_230_0,
+        0.963_018_199_642_2,
+        1.004_652_409_337_2,
+    ];
+    let system = &Preloaded {
+        drive: 0.1861,
+        preload: 0.0646,
+    };
+    assert_doublings(system, [0.5, 2.2], [0.95, 1.05], &exact);
+}
+
+/// With a preload of 0.05 the branch bends by more than a right angle within a hundredth of its range behind the touch at 0.85769: a step of the usual
+/// length from there leads back to the side that is clear. And two folds at 1.21906 are within 1e-6 of each other beside the touch
+/// at 1.21857.
+#[test]
+fn a_branch_that_bends_behind_a_touch_is_not_followed_back() {
+    let system = Preloads {
+        drive: 0.5,
+        p: 0.05,
+    };
+    let mut all: Vec<Vec<f64>> = Vec::new();
+    for [from, to] in [[0.4, 2.2], [2.2, 0.4]] {
+        let request = FrequencyResponse::of(&system).from(from).to(to);
+        let moved = request.clone().by(Shooting::new()).run().unwrap();
+        let solved = request.by(ContactEquation::new()).run().unwrap();
+        for branch in [moved, solved] {
+            assert_eq!(branch.stopped, Stop::ReachedEnd);
+            assert_eq!(branch.turns, []);
+            let mut values: Vec<f64> = branch
+                .events
+                .iter()
+                .map(|event| event.point.value)
+                .collect();
+            values.sort_by(f64::total_cmp);
+            all.push(values);
+        }
+    }
+    for values in &all {
+        assert_eq!(values.len(), 9, "{values:?}");
+        for (a, b) in values.iter().zip(&all[0]) {
+            assert!((a - b).abs() < 1e-10, "{a} {b}");
+        }
+    }
+}
