@@ -9,7 +9,7 @@ use super::corner_search::{Beside, Corner};
 use super::grazing::{Bent, touching};
 use super::grazing_search::Reached;
 use super::seen::Seen;
-use crate::branches::extreme::Bend;
+use crate::branches::extreme::{Bend, Extreme};
 use crate::branches::point::Event;
 use crate::branches::problem::{Change, Touch};
 use crate::continuation::follow::{CurvePoint, Step};
@@ -41,6 +41,11 @@ impl Engine {
         let mut first = known;
         let way = self.way_to_corner(tried, before, passed);
         self.events_along(tried, before, &way, after);
+        let mut touching = Vec::new();
+        tried
+            .problem
+            .extremes(&touch.located.point.u, &mut touching);
+        self.touches_beside_corner(tried, [before, end], &touching, after);
         if comes_clear {
             first = tried.problem.record().events.len();
         }
@@ -55,6 +60,7 @@ impl Engine {
         self.falls = None;
         let way = self.way_from_corner(tried, before, passed);
         self.events_between_all(tried, &way, after);
+        self.touches_beside_corner(tried, [begin, &next.point], &touching, after);
         if self.ended.is_some() {
             return None;
         }
@@ -166,6 +172,20 @@ impl Engine {
         }
         if let Some(last) = way.last() {
             self.falls = last.falls;
+        }
+    }
+
+    /// What else is touched on one side of a corner, at which these extremes touch.
+    fn touches_beside_corner(
+        &mut self,
+        tried: &mut Tried<'_>,
+        [before, next]: [&CurvePoint; 2],
+        touching: &[Extreme],
+        after: usize,
+    ) {
+        let step = Step { before, next };
+        if self.ended.is_none() {
+            self.touches_of_others(tried.problem, &mut tried.newton, step, touching, after);
         }
     }
 

@@ -48,6 +48,8 @@ struct TouchSearch<'s> {
     options: NewtonOptions,
     range: f64,
     after: usize,
+    /// Contacts and levels that are not looked at.
+    without: Vec<[usize; 2]>,
     /// Orbits that parted it so far.
     parted: usize,
     /// Where the branch turned back without a fold, until a touch explains that.
@@ -179,6 +181,33 @@ impl Engine {
         problem.record_mut().ends_with_joint();
     }
 
+    /// Where extremes reach other levels than those that an orbit with these extremes touches, between two orbits that are not kept as points.
+    pub(super) fn touches_of_others(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        step: Step<'_>,
+        touching: &[Extreme],
+        after: usize,
+    ) {
+        if !problem.seeks_touches() {
+            return;
+        }
+        let mut search = self.touch_search(step, after);
+        let touching = touching
+            .iter()
+            .filter(|extreme| extreme.above.abs() <= AT_ONCE);
+        search.without = touching
+            .map(|extreme| [extreme.contact, extreme.level])
+            .collect();
+        let ends = [step.before, step.next].map(|point| search.gaps_at(problem, point));
+        let [Some(before), Some(next)] = ends else {
+            return;
+        };
+        search.between_all(problem, newton, &[before, next]);
+        self.bent.append(&mut search.bent);
+    }
+
     /// Records what test functions show at touches and behind them, and at no end of the step between the points of these places from the last one
     /// on. Behind a touch they change as a root or along another line: no parabola through three points tells that.
     fn beside_touches(
@@ -248,6 +277,7 @@ impl Engine {
             options: self.options.newton,
             range: (self.options.to - self.options.from).abs(),
             after,
+            without: Vec::new(),
             parted: 0,
             turned: None,
             found: Vec::new(),
@@ -329,6 +359,14 @@ impl Bent {
 }
 
 impl TouchSearch<'_> {
+    /// A point with the extremes that are looked at.
+    fn gaps_at(&self, problem: &mut dyn BranchProblem, point: &CurvePoint) -> Option<Gaps> {
+        let mut gaps = Gaps::at(problem, point)?;
+        let left_out = |extreme: &Extreme| self.without.contains(&[extreme.contact, extreme.level]);
+        gaps.extremes.retain(|extreme| !left_out(extreme));
+        Some(gaps)
+    }
+
     /// Looks at all parts of the step.
     fn between_all(
         &mut self,
@@ -404,7 +442,7 @@ impl TouchSearch<'_> {
         };
         let middle = PLACES.into_iter().find_map(|place| {
             let middle = inside(problem.equations(), newton, part, place, self.options)?;
-            Gaps::at(problem, &middle)
+            self.gaps_at(problem, &middle)
         });
         let Some(middle) = middle else {
             return false;
