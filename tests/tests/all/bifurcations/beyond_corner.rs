@@ -124,3 +124,37 @@ fn a_branch_that_bends_behind_a_touch_is_not_followed_back() {
         }
     }
 }
+
+/// A Hertzian contact is reached just before the stop with a preload, within one step: where the linear response `0.3 / |1 - w^2 + 0.1 i w|` is as large as
+/// their gaps.
+#[test]
+fn another_contact_that_is_touched_beside_a_corner_is_located() {
+    hertzian::oscillator! {
+        Both(x) {
+            law stop(gap) { gap >= 0 => 0.05 + 4*gap, else => 0 }
+            law hertz(gap) { gap > 0 => 5*gap^1.5, else => 0 }
+            ddot(x) + 0.1*dot(x) + x + stop(x - 1) + hertz(-x - 0.998) = 0.3*cos(omega*t);
+        }
+    }
+    let reached = |gap: f64, side: f64| {
+        let square = (0.3 / gap).powi(2);
+        let middle = 1.0 - 0.5 * 0.1 * 0.1;
+        (middle + side * (middle * middle - 1.0 + square).sqrt()).sqrt()
+    };
+    for ([from, to], side) in [([0.4, 1.0], -1.0), ([2.2, 0.9], 1.0)] {
+        let request = FrequencyResponse::of(&Both {}).from(from).to(to);
+        let moved = request.clone().by(Shooting::new()).run().unwrap();
+        let solved = request.by(ContactEquation::new()).run().unwrap();
+        for branch in [moved, solved] {
+            let touches = branch.events.iter();
+            let touches = touches.filter(|event| matches!(event.kind, EventKind::Grazing { .. }));
+            let values: Vec<f64> = touches.map(|event| event.point.value).collect();
+            let exact = [reached(0.998, side), reached(1.0, side)];
+            assert_eq!(values.len(), 2, "{values:?}");
+            for (value, exact) in values.iter().zip(exact) {
+                let error = (value - exact).abs();
+                assert!(error < 1e-11, "{value}: {error:.1e}");
+            }
+        }
+    }
+}
