@@ -74,7 +74,7 @@ impl Engine {
         let highest = outer.extreme.above;
         let lowest = first.extreme.above.abs();
         beyond.keep(first);
-        let is_beside = highest.abs() <= lowest / PART;
+        let is_beside = highest.abs() <= lowest;
         beyond.keep(outer);
         if is_beside {
             return beyond.in_order(comes, self.falls);
