@@ -144,7 +144,7 @@ impl<'p> Solved<'p> {
     }
 
     fn outputs(&self) -> Vec<Extent> {
-        self.run.outputs(self.equations(), self.value, false)
+        self.run.outputs(self.equations(), self.value)
     }
 
     /// Signals, with so many harmonics.
@@ -253,7 +253,7 @@ fn differ(run: &Run<'_>, finer: &Equations, point: &Point) -> f64 {
     let Accuracy::Output(output) = run.problem.asked.accuracy else {
         return apart;
     };
-    let [own, other] = [&run.equations, finer].map(|of| run.outputs(of, point.value, false));
+    let [own, other] = [&run.equations, finer].map(|of| run.outputs(of, point.value));
     let pair = own.get(output).zip(other.get(output));
     pair.map_or(apart, |(a, b)| {
         let rounding = EXTREMES * f64::EPSILON * a.farthest();

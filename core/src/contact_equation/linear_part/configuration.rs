@@ -220,15 +220,19 @@ fn states(linear: &Linear) -> DMatrix<f64> {
 }
 
 /// A force on a piece of a law, `force + by_gap (g - at) + by_rate g'`.
-struct Affine {
-    at: f64,
-    force: f64,
-    by_gap: f64,
-    by_rate: f64,
+pub(in crate::contact_equation) struct Affine {
+    pub(in crate::contact_equation) at: f64,
+    pub(in crate::contact_equation) force: f64,
+    pub(in crate::contact_equation) by_gap: f64,
+    pub(in crate::contact_equation) by_rate: f64,
 }
 
 impl Affine {
-    fn of(system: &dyn System, contact: &Contact, piece: usize) -> Self {
+    pub(in crate::contact_equation) fn of(
+        system: &dyn System,
+        contact: &Contact,
+        piece: usize,
+    ) -> Self {
         let at = contact.held(piece, 0.0);
         let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
         let out = Derivatives {

@@ -6,7 +6,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::block::{Block, Pair, times};
-use super::configuration::Kept;
+use super::configuration::{Affine, Kept};
 use super::linear::{Linear, Seen, seen};
 use crate::model::layout::{ContactLayout, Layout, Term, constant};
 use crate::numeric::linear;
@@ -178,6 +178,27 @@ impl Contact {
             .min(above.copied().unwrap_or(f64::INFINITY))
     }
 
+    /// An affine force at both ends of its piece: between them it is where it does not depend on the rate, else it is anywhere.
+    pub(in crate::contact_equation) fn force_at_ends(
+        &self,
+        affine: &Affine,
+        piece: usize,
+    ) -> [f64; 2] {
+        if affine.by_rate != 0.0 {
+            return [f64::NEG_INFINITY, f64::INFINITY];
+        }
+        [f64::NEG_INFINITY, f64::INFINITY].map(|far| {
+            let gap = self.held(piece, far);
+            // Of a force that does not change with an infinite gap.
+            let by = if affine.by_gap == 0.0 {
+                0.0
+            } else {
+                affine.by_gap * (gap - affine.at)
+            };
+            affine.force + by
+        })
+    }
+
     /// The highest harmonic of what moves in its gap.
     pub(in crate::contact_equation) fn harmonic(&self) -> f64 {
         self.gap.harmonic().max(self.offset.harmonic())
@@ -219,6 +240,11 @@ impl Contact {
         let rate = self.rate.dot(tau, 0, states);
         let turning = if self.stands() { 0.0 } else { of(1) };
         [of(0), rate + base * turning]
+    }
+
+    /// The direction of one that stands, over the coordinates.
+    pub(in crate::contact_equation) fn constant_direction(&self) -> &[f64] {
+        &self.direction.constant
     }
 
     /// The offset of one that stands.

@@ -26,7 +26,7 @@ use super::layers::{Grids, Layer};
 use super::motion::Motion;
 use super::pieces::Part;
 use super::search::{Cubic, Largest, extreme};
-use super::signal::{Look, Of, Signal, Term};
+use super::signal::{Look, Of, Signal};
 use super::sums::integrals_of;
 use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::linear_part::block::Block;
@@ -128,12 +128,12 @@ pub(super) fn extremes_of_gaps(motion: &Motion<'_>) -> Vec<Vec<GapExtreme>> {
 pub(super) fn extremes_of_coordinates(motion: &Motion<'_>) -> Vec<[Place; 2]> {
     let sampled = motion.sampled();
     let coordinates = 0..motion.equations.values.linear.rows.len();
-    let found = coordinates.map(|coordinate| farthest(motion, sampled, Of::Coordinate(coordinate)));
+    let found = coordinates.map(|coordinate| coordinate_ends(motion, sampled, coordinate));
     let found: Vec<[Place; 2]> = found.collect();
     of_period(motion, &found)
 }
 
-/// What a sum of coordinates does until the orbit comes back.
+/// What a sum of coordinates does on some intervals.
 pub(in crate::contact_equation) struct Outputs {
     pub(in crate::contact_equation) least: f64,
     pub(in crate::contact_equation) most: f64,
@@ -141,19 +141,16 @@ pub(in crate::contact_equation) struct Outputs {
     pub(in crate::contact_equation) integrals: [f64; 2],
 }
 
-/// Reads a sum of coordinates, and a constant.
-pub(in crate::contact_equation) fn read(
-    motion: &Motion<'_>,
-    sampled: &[Sampled],
-    terms: &[Term],
-    constant: f64,
+/// Reads what is given interval by interval.
+pub(in crate::contact_equation) fn read<'m>(
+    motion: &'m Motion<'_>,
+    signals: impl Iterator<Item = (&'m Sampled, Of<'m>)>,
 ) -> Outputs {
-    let of = Of::Sum(terms, constant);
-    let [least, most] = farthest(motion, sampled, of);
+    let mut parts = parts(motion, signals);
+    let [least, most] = farthest(motion, &mut parts);
     let mut integrals = [0.0; 2];
-    for sampled in sampled {
-        let mut signal = Signal::new(motion, sampled, of);
-        for (integral, own) in integrals.iter_mut().zip(integrals_of(&mut signal)) {
+    for part in &mut parts {
+        for (integral, own) in integrals.iter_mut().zip(integrals_of(&mut part.signal)) {
             *integral += own;
         }
     }
@@ -171,7 +168,7 @@ pub(in crate::contact_equation) fn extremes_of(
     asked: Range<usize>,
 ) -> Vec<[Place; 2]> {
     let sampled = motion.sampled();
-    let of = |coordinate| farthest(motion, sampled, Of::Coordinate(coordinate));
+    let of = |coordinate| coordinate_ends(motion, sampled, coordinate);
     if motion.equations.skeleton.recurrence().image.is_identity() {
         return asked.map(of).collect();
     }
@@ -180,16 +177,29 @@ pub(in crate::contact_equation) fn extremes_of(
     of_period(motion, &all).drain(asked).collect()
 }
 
-/// The smallest and the largest value of a signal.
-fn farthest(motion: &Motion<'_>, sampled: &[Sampled], of: Of<'_>) -> [Place; 2] {
-    let none = |value: f64| Place { x: 0.0, value };
-    let mut ends = [none(f64::INFINITY), none(f64::NEG_INFINITY)];
-    let parts = sampled.iter().map(|sampled| {
+/// The smallest and the largest value of a coordinate.
+fn coordinate_ends(motion: &Motion<'_>, sampled: &[Sampled], coordinate: usize) -> [Place; 2] {
+    let signals = sampled.iter().map(|of| (of, Of::Coordinate(coordinate)));
+    farthest(motion, &mut parts(motion, signals))
+}
+
+/// Signals with their samples.
+fn parts<'m, 'e, 'r>(
+    motion: &'m Motion<'e>,
+    signals: impl Iterator<Item = (&'m Sampled, Of<'r>)>,
+) -> Vec<Part<'m, 'e>> {
+    let parts = signals.map(|(sampled, of)| {
         let signal = Signal::new(motion, sampled, of);
         let pieces = signal.pieces();
         Part { signal, pieces }
     });
-    let mut parts: Vec<Part<'_, '_>> = parts.collect();
+    parts.collect()
+}
+
+/// The smallest and the largest value of a signal that is given part by part.
+fn farthest(motion: &Motion<'_>, parts: &mut [Part<'_, '_>]) -> [Place; 2] {
+    let none = |value: f64| Place { x: 0.0, value };
+    let mut ends = [none(f64::INFINITY), none(f64::NEG_INFINITY)];
     for piece in parts.iter().flat_map(|part| &part.pieces) {
         let [low, high] = piece.ends();
         if low.value < ends[0].value {
@@ -202,7 +212,7 @@ fn farthest(motion: &Motion<'_>, sampled: &[Sampled], of: Of<'_>) -> [Place; 2] 
     let range = ends[1].value - ends[0].value;
     for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
         let mut largest = Largest {
-            parts: &mut parts,
+            parts,
             base: motion.equations.values.base,
             sign,
             range,
@@ -265,6 +275,10 @@ impl Sampled {
                 sampled
             })
             .collect()
+    }
+
+    pub(in crate::contact_equation) fn interval(&self) -> usize {
+        self.interval
     }
 
     fn take(&mut self, motion: &Motion<'_>) {

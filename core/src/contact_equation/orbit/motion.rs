@@ -177,7 +177,7 @@ impl<'e> Motion<'e> {
     }
 
     /// Nothing is unknown at nodes and no wave is in resonance: the motion is in closed form.
-    pub(super) fn is_closed(&self, interval: usize) -> bool {
+    pub(in crate::contact_equation) fn is_closed(&self, interval: usize) -> bool {
         self.equations.passed[interval].forced.is_empty() && !self.values(interval).has_resonance()
     }
 

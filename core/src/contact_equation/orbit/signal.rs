@@ -24,7 +24,7 @@ use super::motion::Motion;
 use super::pieces::Piece;
 use super::sums::Exponential;
 use crate::contact_equation::collocation::nodes::Nodes;
-use crate::contact_equation::linear_part::block::{Pair, times};
+use crate::contact_equation::linear_part::block::{Pair, row_times, times};
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::linear::{Seen, of_states, seen};
 use crate::contact_equation::linear_part::values::{pair, turn};
@@ -42,7 +42,7 @@ const SHARED: usize = 64;
 pub(in crate::contact_equation) enum Of<'r> {
     Coordinate(usize),
     Gap(usize),
-    /// A row over coordinates and velocities, and what is added.
+    /// A sum of coordinates and rates, and what is added. Rates are asked for where the motion is in closed form alone.
     Sum(&'r [Term], f64),
 }
 
@@ -50,6 +50,7 @@ pub(in crate::contact_equation) enum Of<'r> {
 #[derive(Debug, Clone, Copy)]
 pub(in crate::contact_equation) struct Term {
     pub(in crate::contact_equation) coordinate: usize,
+    pub(in crate::contact_equation) of_rate: bool,
     pub(in crate::contact_equation) factor: f64,
 }
 
@@ -144,11 +145,17 @@ impl<'m, 'e> Signal<'m, 'e> {
             self.whole = Some(Whole::Row);
         }
         self.row = row;
-        let row = match (of, motion.configuration(self.interval)) {
+        let mut row = match (of, motion.configuration(self.interval)) {
             (Of::Coordinate(index), Some(of)) => Cow::Borrowed(&of.values.linear.rows[index][..]),
             (_, Some(of)) => Cow::Owned(of.row(&self.row)),
             _ => self.row.clone(),
         };
+        if matches!(of, Of::Sum(terms, _) if terms.iter().any(|term| term.of_rate)) {
+            // What a rate itself moves with is known of its free part alone, as `p A`.
+            for seen in row.to_mut() {
+                seen.rate = row_times(seen.position, values.linear.blocks[seen.block].matrix);
+            }
+        }
         self.put(content, &row);
         self.own = row;
     }
@@ -460,15 +467,21 @@ fn dot(a: Pair, b: Pair) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// The row of a sum of coordinates.
+/// The row of a sum of coordinates and rates.
 pub(super) fn sum(rows: &[Vec<Seen>], terms: &[Term]) -> Vec<Seen> {
     let states = 2 * rows.len();
     let mut both = [vec![0.0; states], vec![0.0; states]];
     for term in terms {
         for seen in &rows[term.coordinate] {
-            for i in 0..2 {
-                both[0][2 * seen.block + i] += term.factor * seen.position[i];
-                both[1][2 * seen.block + i] += term.factor * seen.rate[i];
+            let of = if term.of_rate {
+                [seen.rate, [0.0; 2]]
+            } else {
+                [seen.position, seen.rate]
+            };
+            for (both, of) in both.iter_mut().zip(of) {
+                for i in 0..2 {
+                    both[2 * seen.block + i] += term.factor * of[i];
+                }
             }
         }
     }

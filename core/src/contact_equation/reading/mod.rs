@@ -23,6 +23,7 @@ pub(super) mod errors;
 mod finer_rest;
 pub(super) mod minimal_period;
 pub(super) mod overlooked;
+mod piecewise;
 mod plain_outputs;
 pub(super) mod stretch;
 
@@ -30,6 +31,7 @@ use nalgebra::{Complex, DMatrix};
 
 use self::errors::Steepness;
 use self::overlooked::Overlooked;
+use self::piecewise::Piecewise;
 use self::stretch::Read;
 use super::equations::Equations;
 use super::orbit::extents;
@@ -94,7 +96,7 @@ impl Run<'_> {
             },
             stability: Stability::unknown(),
             observed: Observed {
-                outputs: self.outputs_of(&motion, value, false),
+                outputs: self.outputs_of(&motion, value),
                 sampled: self.samples_coordinates(),
                 ..Observed::extremes(self.motions_of(&motion), switches * recurrence.parts)
             },
@@ -125,28 +127,33 @@ impl Run<'_> {
         motions
     }
 
-    /// The outputs of the same, with more rounding of states if that is wanted.
-    pub(super) fn outputs(&self, equations: &Equations, value: f64, rounded: bool) -> Vec<Extent> {
-        self.outputs_of(&Motion::of(equations), value, rounded)
+    /// The outputs of the same.
+    pub(super) fn outputs(&self, equations: &Equations, value: f64) -> Vec<Extent> {
+        self.outputs_of(&Motion::of(equations), value)
     }
 
-    fn outputs_of(&self, motion: &Motion<'_>, value: f64, rounded: bool) -> Vec<Extent> {
-        let problem = &self.problem.asked;
-        let recurrence = motion.equations.skeleton.recurrence();
-        let (parameters, omega) = (problem.parameters_at(value), problem.omega_at(value));
-        let plain = plain_outputs::all(problem.system.as_ref(), &parameters, omega);
-        let plain = plain
-            .iter()
-            .map(|output| Some(output.as_ref()?.motion(motion)));
-        let plain: Vec<Option<Extent>> = plain.collect();
-        if let Some(outputs) = plain.iter().copied().collect() {
-            return outputs;
+    fn outputs_of(&self, motion: &Motion<'_>, value: f64) -> Vec<Extent> {
+        let asked = &self.problem.asked;
+        let (parameters, omega) = (asked.parameters_at(value), asked.omega_at(value));
+        Piecewise {
+            system: asked.system.as_ref(),
+            parameters: &parameters,
+            omega,
+            motion,
         }
-        let Some(mut outputs) = problem.output_reader(value, recurrence) else {
+        .read()
+    }
+
+    /// The outputs of the same by rules of quadrature, with more rounding of states if that is wanted.
+    pub(super) fn outputs_by_rules(&self, value: f64, rounded: bool) -> Vec<Extent> {
+        let motion = Motion::of(&self.equations);
+        let recurrence = self.equations.skeleton.recurrence();
+        let Some(mut outputs) = self.problem.asked.output_reader(value, recurrence) else {
             return Vec::new();
         };
         for interval in 0..motion.intervals() {
             let [from, to] = motion.phases(interval);
+            let motion = &motion;
             let within = Read::new(Within { motion, interval });
             if to > from && rounded {
                 outputs.include(&Rounded(&within));
@@ -154,8 +161,7 @@ impl Run<'_> {
                 outputs.include(&within);
             }
         }
-        let pairs = plain.into_iter().zip(outputs.motions());
-        pairs.map(|(plain, read)| plain.unwrap_or(read)).collect()
+        outputs.motions()
     }
 
     /// Reads an orbit with everything that is asked for, its errors as a finer solution shows them: those at its value.

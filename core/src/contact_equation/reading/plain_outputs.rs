@@ -9,13 +9,14 @@ use crate::branches::observed::Motion as Extent;
 use crate::branches::recurrence::{Recurrence, SignedPermutation};
 use crate::contact_equation::orbit::extremes::read;
 use crate::contact_equation::orbit::motion::Motion;
-use crate::contact_equation::orbit::signal::Term;
+use crate::contact_equation::orbit::signal::{Of, Term};
 use crate::system::{Place, Signal, System, Wave};
 
 /// A sum of coordinates and a constant.
+#[derive(Debug, Clone)]
 pub(super) struct Plain {
-    terms: Vec<Term>,
-    constant: f64,
+    pub(super) terms: Vec<Term>,
+    pub(super) constant: f64,
 }
 
 impl Plain {
@@ -33,7 +34,23 @@ impl Plain {
     }
 }
 
-/// One output, if it is such a sum.
+/// A sum of coordinates, rates and forces of contacts.
+pub(super) struct Sum {
+    /// All of it but the forces; rates are among its terms.
+    pub(super) linear: Plain,
+    /// Contacts, and what their forces are multiplied by.
+    pub(super) forces: Vec<(usize, f64)>,
+}
+
+impl Sum {
+    /// What it is if there are coordinates alone.
+    pub(super) fn plain(self) -> Option<Plain> {
+        let rates = self.linear.terms.iter().any(|term| term.of_rate);
+        (self.forces.is_empty() && !rates).then_some(self.linear)
+    }
+}
+
+/// One output, if it is a sum of coordinates.
 pub(super) fn one(
     system: &dyn System,
     parameters: &[f64],
@@ -41,15 +58,19 @@ pub(super) fn one(
     output: usize,
 ) -> Option<Plain> {
     let mut outputs = all(system, parameters, omega);
-    (output < outputs.len()).then(|| outputs.swap_remove(output))?
+    let of = (output < outputs.len()).then(|| outputs.swap_remove(output))?;
+    of?.plain()
 }
 
 /// All outputs; nothing of one that is no such sum.
-pub(super) fn all(system: &dyn System, parameters: &[f64], omega: f64) -> Vec<Option<Plain>> {
+pub(super) fn all(system: &dyn System, parameters: &[f64], omega: f64) -> Vec<Option<Sum>> {
     let facts = system.facts();
-    let nothing = || Plain {
-        terms: Vec::new(),
-        constant: 0.0,
+    let nothing = || Sum {
+        linear: Plain {
+            terms: Vec::new(),
+            constant: 0.0,
+        },
+        forces: Vec::new(),
     };
     let mut found: Vec<_> = facts.outputs.iter().map(|_| Some(nothing())).collect();
     let mut coefficients = vec![0.0; facts.places.len()];
@@ -61,11 +82,19 @@ pub(super) fn all(system: &dyn System, parameters: &[f64], omega: f64) -> Vec<Op
         let Some(sum) = &mut found[output] else {
             continue;
         };
+        let mut add = |coordinate, of_rate| {
+            sum.linear.terms.push(Term {
+                coordinate,
+                of_rate,
+                factor,
+            });
+        };
         match of {
-            Signal::Coordinate(coordinate) if wave == Wave::CONSTANT => {
-                sum.terms.push(Term { coordinate, factor });
-            }
-            Signal::Constant if wave == Wave::CONSTANT => sum.constant += factor,
+            _ if wave != Wave::CONSTANT => found[output] = None,
+            Signal::Coordinate(coordinate) => add(coordinate, false),
+            Signal::Rate(coordinate) => add(coordinate, true),
+            Signal::Force(contact) => sum.forces.push((contact, factor)),
+            Signal::Constant => sum.linear.constant += factor,
             _ => found[output] = None,
         }
     }
@@ -77,15 +106,12 @@ impl Plain {
     pub(super) fn motion(&self, motion: &Motion<'_>) -> Extent {
         let sampled = motion.sampled();
         let recurrence = motion.equations.skeleton.recurrence();
-        let mut whole = Extent {
-            mean: Some(0.0),
-            rms: Some(0.0),
-            ..Extent::NONE
-        };
+        let mut whole = Extent::NONE;
         let mut sums = [0.0; 2];
         for part in 0..recurrence.parts {
             let terms = image(&self.terms, &recurrence.image.power(part));
-            let found = read(motion, sampled, &terms, self.constant);
+            let of = |sampled| (sampled, Of::Sum(&terms, self.constant));
+            let found = read(motion, sampled.iter().map(of));
             whole.include(found.least);
             whole.include(found.most);
             for (sum, own) in sums.iter_mut().zip(found.integrals) {
@@ -97,18 +123,20 @@ impl Plain {
 }
 
 /// The terms of an output as they are where coordinates are in each other's place.
-fn image(terms: &[Term], image: &SignedPermutation) -> Vec<Term> {
+pub(super) fn image(terms: &[Term], image: &SignedPermutation) -> Vec<Term> {
     let terms = terms.iter().map(|term| {
         let (coordinate, sign) = image.entry(term.coordinate);
         Term {
             coordinate,
+            of_rate: term.of_rate,
             factor: sign * term.factor,
         }
     });
     terms.collect()
 }
 
-fn finish(whole: Extent, sums: [f64; 2], recurrence: &Recurrence) -> Extent {
+/// Extremes with the integrals over the period of the signal and of its square.
+pub(super) fn finish(whole: Extent, sums: [f64; 2], recurrence: &Recurrence) -> Extent {
     let length = TAU * recurrence.period as f64;
     Extent {
         mean: Some(sums[0] / length),

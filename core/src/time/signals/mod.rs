@@ -128,6 +128,13 @@ impl<'s> Signals<'s> {
         }
     }
 
+    /// Some of them alone, in this order.
+    pub(crate) fn only(mut self, signals: &[usize]) -> Self {
+        let sums = signals.iter().map(|signal| self.sums[*signal].clone());
+        self.sums = sums.collect();
+        self
+    }
+
     /// Number of signals.
     pub(crate) fn count(&self) -> usize {
         self.sums.len()
