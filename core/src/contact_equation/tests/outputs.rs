@@ -78,3 +78,53 @@ fn stated_errors_of_sums_hold() {
         assert!(stated <= 1e-8, "{}: {stated:e}", point.value);
     }
 }
+
+crate::oscillator! {
+    /// A damped elastic stop on each side of the first of two masses: orbits come back with signs changed after half of the period.
+    Between(x, y) {
+        law right(g, kr, cr) { g > 0 => kr*g + cr*dot(g), else => 0 }
+        law left(g, kl, cl) { g < 0 => kl*g + cl*dot(g), else => 0 }
+        param k = 20;
+        param c = 0.2;
+        param lean = 0;
+        ddot(x) + 0.1*dot(x) + x - 0.5*(y - x) + right(x - 0.8, k, c) + left(x + 0.8, k, c) = 1.2*cos(omega*t) + lean;
+        ddot(y) + 0.1*dot(y) + 2*y + 0.5*(y - x) = 0;
+        output push = force(right);
+        output pull = force(left);
+        output rate = dot(x) - 2*dot(y) + 0.1;
+        output both = x + 0.05*force(left) - 0.02*force(right) - 0.3;
+        output shaking = ddot(y);
+    }
+}
+
+/// Forces, rates and sums of them are in closed form, an acceleration is read by rules beside them: all as they are read off the orbit by shooting.
+#[test]
+fn outputs_of_affine_forces_are_those_of_rules() {
+    for (lean, c, omega) in [(0.0, 0.2, 1.1), (0.05, 0.0, 1.3)] {
+        let system = Between {
+            lean,
+            c,
+            ..Between::default()
+        };
+        let request = FrequencyResponse::of(&system);
+        let exact = request.by(Shooting::new()).tolerance(1e-12);
+        let exact = exact.orbit(omega).unwrap();
+        let request = FrequencyResponse::of(&system).by(ContactEquation::new());
+        let own = request.near_orbit(&exact.orbit).orbit(omega).unwrap();
+        assert_eq!(own.orbit.parts, if lean == 0.0 { 2 } else { 1 });
+        let pairs = own.observed.outputs.iter().zip(&exact.observed.outputs);
+        for (output, (own, exact)) in pairs.enumerate() {
+            let small = 1e-8 * exact.peak_to_peak();
+            let numbers = |of: &Motion| [of.minimum, of.maximum, of.mean.unwrap(), of.rms.unwrap()];
+            for (own, exact) in numbers(own).into_iter().zip(numbers(exact)) {
+                assert!(
+                    (own - exact).abs() < small,
+                    "{lean} {output}: {own} {exact}"
+                );
+            }
+        }
+        // Rounding takes no force beyond where its piece ends.
+        let [push, pull] = [0, 1].map(|output| own.observed.outputs[output]);
+        assert!(c > 0.0 || push.minimum == 0.0 && pull.maximum == 0.0);
+    }
+}
