@@ -294,7 +294,11 @@ impl Block {
 
     /// `e^(A s)`
     pub(in crate::contact_equation) fn exponential(&self, s: f64) -> Square {
-        let Kernel { c, k } = self.kernel(s);
+        self.exponential_of(self.kernel(s))
+    }
+
+    /// `c I + k D`
+    pub(in crate::contact_equation) fn exponential_of(&self, Kernel { c, k }: Kernel) -> Square {
         let d = self.deviation;
         [
             [c + k * d[0][0], k * d[0][1]],

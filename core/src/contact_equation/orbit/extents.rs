@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use super::motion::Motion;
+use super::positions::positions;
 use crate::branches::observed::Motion as Extent;
 
 /// Phases in a period of the declaration, each a part of the whole period after the last one that no harmonic or number of parts has in common with them:
@@ -16,13 +17,14 @@ pub(in crate::contact_equation) fn sampled(motion: &Motion<'_>) -> Vec<Extent> {
     let skeleton = &motion.equations.skeleton;
     let coordinates = motion.equations.values.linear.positions.nrows();
     let mut extents = vec![Extent::NONE; coordinates];
-    let mut state = vec![0.0; 2 * coordinates];
     let period = skeleton.recurrence().period;
-    for sample in 0..PHASES * period {
+    let phase = |sample: usize| {
         let part = (PART * sample as f64).fract();
-        let phase = skeleton.begin + TAU * period as f64 * part;
-        motion.at(phase, &mut state);
-        for (extent, x) in extents.iter_mut().zip(&state) {
+        skeleton.begin + TAU * period as f64 * part
+    };
+    let phases: Vec<f64> = (0..PHASES * period).map(phase).collect();
+    for positions in positions(motion, &phases).chunks_exact(coordinates) {
+        for (extent, x) in extents.iter_mut().zip(positions) {
             extent.include(*x);
         }
     }

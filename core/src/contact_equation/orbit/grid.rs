@@ -15,16 +15,32 @@ use multiversion::multiversion;
 
 use super::motion::Motion;
 use crate::contact_equation::linear_part::block::{Block, Pair, Square};
+use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::linear::Seen;
 use crate::contact_equation::linear_part::values::{pair, turn};
+
+/// A row that sees more than this part of all pairs has the exponentials of all at once.
+const MANY: usize = 8;
 
 /// Samples at even distances.
 #[derive(Debug)]
 pub(super) struct Grid {
     pub(super) phases: Vec<f64>,
     /// Cosines and sines of every wave that is not in resonance.
-    waves: Vec<[Vec<f64>; 2]>,
-    pairs: Vec<OnceCell<[Vec<f64>; 2]>>,
+    waves: Vec<Both>,
+    pairs: Vec<OnceCell<Both>>,
+    /// Exponentials of all pairs: to the beginning of the grid, and over the steps of (1).
+    powers: OnceCell<Vec<Found>>,
+}
+
+/// Two numbers for each sample: those of the first kind, then those of the second.
+#[derive(Debug)]
+struct Both(Vec<f64>);
+
+impl Both {
+    fn halves(&self) -> [&[f64]; 2] {
+        self.0.split_at(self.0.len() / 2).into()
+    }
 }
 
 impl Grid {
@@ -53,6 +69,7 @@ impl Grid {
             pairs: (0..values.linear.blocks.len())
                 .map(|_| OnceCell::new())
                 .collect(),
+            powers: OnceCell::new(),
             phases,
         }
     }
@@ -69,34 +86,77 @@ impl Grid {
         turns: f64,
         [values, rates]: [&mut [f64]; 2],
     ) {
-        let [cosines, sines] = &self.waves[wave];
+        let turns_of = self.waves[wave].halves();
         let both = [[re, -im], [-turns * im, -turns * re]];
-        add_seen([cosines, sines], both, values, rates);
+        add_seen(turns_of, both, values, rates);
     }
 
-    /// Adds what a row sees of a pair.
-    pub(super) fn add_pair(
+    /// Adds what a row sees of the pairs.
+    pub(super) fn add_row(
         &self,
         motion: &Motion<'_>,
         interval: usize,
-        seen: &Seen,
+        row: &[Seen],
         [values, rates]: [&mut [f64]; 2],
     ) {
-        let [first, second] = self.pairs[seen.block].get_or_init(|| {
-            let [begin, _] = motion.phases(interval);
-            let [from, to] = self.ends();
-            let of = motion.values(interval);
-            let block: &Block = &of.linear.blocks[seen.block];
-            let parts = self.phases.len() - 1;
-            let step = (to - from) / of.base / parts as f64;
-            let mut free = pair(&motion.equations.passed[interval].free, seen.block);
-            if from > begin {
-                free = block.carried(block.kernel((from - begin) / of.base), free);
-            }
-            doubled(free, parts, |m| block.exponential(step * m as f64))
+        let many = MANY * row.len() > self.pairs.len();
+        for seen in row {
+            let pair = self.pairs[seen.block].get_or_init(|| {
+                if many {
+                    self.pair_of_many(motion, interval, seen.block)
+                } else {
+                    self.pair(motion, interval, seen.block)
+                }
+            });
+            let both = [seen.position, seen.rate];
+            add_seen(pair.halves(), both, values, rates);
+        }
+    }
+
+    /// How long it takes to where the grid begins, and from one sample to the next.
+    fn times(&self, motion: &Motion<'_>, interval: usize) -> [f64; 2] {
+        let [begin, _] = motion.phases(interval);
+        let [from, to] = self.ends();
+        let base = motion.values(interval).base;
+        let parts = self.phases.len() - 1;
+        [(from - begin) / base, (to - from) / base / parts as f64]
+    }
+
+    /// A pair of states at all samples.
+    fn pair(&self, motion: &Motion<'_>, interval: usize, r: usize) -> Both {
+        let [before, step] = self.times(motion, interval);
+        let block: &Block = &motion.values(interval).linear.blocks[r];
+        let mut free = pair(&motion.equations.passed[interval].free, r);
+        if before > 0.0 {
+            free = block.carried(block.kernel(before), free);
+        }
+        let power = |m: usize| block.exponential(step * m as f64);
+        doubled(free, self.phases.len() - 1, power)
+    }
+
+    /// The same, with exponentials of all pairs at once.
+    fn pair_of_many(&self, motion: &Motion<'_>, interval: usize, r: usize) -> Both {
+        let linear = &motion.values(interval).linear;
+        let powers = self.powers.get_or_init(|| {
+            let [before, step] = self.times(motion, interval);
+            let doublings = (0..usize::BITS).map(|power| 1_usize << power);
+            let steps = doublings.take_while(|m| *m < self.phases.len());
+            let times = std::iter::once(before).chain(steps.map(|m| step * m as f64));
+            let of = |time: f64| {
+                let mut found = Found::default();
+                linear.kernels.find(&linear.blocks, time, &mut found);
+                found
+            };
+            times.map(of).collect()
         });
-        let both = [seen.position, seen.rate];
-        add_seen([first, second], both, values, rates);
+        let block: &Block = &linear.blocks[r];
+        let free = pair(&motion.equations.passed[interval].free, r);
+        let free = block.carried(powers[0].kernel(r), free);
+        let power = |m: usize| {
+            let power = &powers[1 + m.ilog2() as usize];
+            block.exponential_of(power.kernel(r))
+        };
+        doubled(free, self.phases.len() - 1, power)
     }
 }
 
@@ -131,24 +191,22 @@ fn write_products(
 }
 
 /// (1)
-fn doubled(begin: Pair, parts: usize, power: impl Fn(usize) -> Square) -> [Vec<f64>; 2] {
-    let mut both = begin.map(|x| {
-        let mut of = vec![0.0; parts + 1];
-        of[0] = x;
-        of
-    });
+fn doubled(begin: Pair, parts: usize, power: impl Fn(usize) -> Square) -> Both {
+    let samples = parts + 1;
+    let mut both = vec![0.0; 2 * samples];
+    let (first, second) = both.split_at_mut(samples);
+    (first[0], second[0]) = (begin[0], begin[1]);
     let mut known = 1;
-    while known <= parts {
-        let more = known.min(parts + 1 - known);
+    while known < samples {
+        let more = known.min(samples - known);
         let by = power(known);
-        let [first, second] = &mut both;
         let (first, first_next) = first.split_at_mut(known);
         let (second, second_next) = second.split_at_mut(known);
         let known_ones = [&first[..more], &second[..more]];
         write_products(by, known_ones, first_next, second_next);
         known += more;
     }
-    both
+    Both(both)
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ pub(super) mod kinks;
 mod layers;
 pub(super) mod motion;
 mod pieces;
+pub(super) mod positions;
 mod search;
 pub(super) mod signal;
 mod sums;

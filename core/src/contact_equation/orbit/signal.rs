@@ -290,10 +290,8 @@ impl<'m, 'e> Signal<'m, 'e> {
             let both = [&mut values[..], &mut rates[..]];
             grid.add_wave(index, [amplitude.re, amplitude.im], turns, both);
         }
-        for seen in &*self.own {
-            let both = [&mut values[..], &mut rates[..]];
-            grid.add_pair(self.motion, self.interval, seen, both);
-        }
+        let both = [&mut values[..], &mut rates[..]];
+        grid.add_row(self.motion, self.interval, &self.own, both);
         Samples {
             phases: &grid.phases,
             values,

@@ -21,6 +21,7 @@ use crate::contact_equation::equations::Equations;
 use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::orbit::extremes::extremes_of;
 use crate::contact_equation::orbit::motion::Motion;
+use crate::contact_equation::orbit::positions::positions;
 use crate::contact_equation::run::{DIFFERENCE, MULTIPLIERS, Run};
 use crate::continuation::follow::CurvePoint;
 use crate::numeric::roots::Place;
@@ -273,7 +274,6 @@ impl Run<'_> {
         let motions = [&self.equations, finer].map(Motion::of);
         let skeleton = &self.equations.skeleton;
         let coordinates = self.equations.values.linear.positions.nrows();
-        let mut states = [vec![0.0; 2 * coordinates], vec![0.0; 2 * coordinates]];
         // An output has no image: it is of other coordinates in the next part.
         let parts = if output.is_some() {
             skeleton.recurrence().parts
@@ -282,12 +282,14 @@ impl Run<'_> {
         };
         let of_output = matches!(self.accuracy(), Accuracy::Output(_));
         let mut most = [if of_output { 0.0 } else { apart }, apart];
-        for sample in 0..COMPARED * parts {
-            let phase = skeleton.begin + skeleton.length * (sample as f64 / COMPARED as f64);
-            for (motion, state) in motions.iter().zip(&mut states) {
-                motion.at(phase, state);
-            }
-            let [a, b] = states.each_ref().map(|state| &state[..coordinates]);
+        let phase =
+            |sample: usize| skeleton.begin + skeleton.length * (sample as f64 / COMPARED as f64);
+        let phases: Vec<f64> = (0..COMPARED * parts).map(phase).collect();
+        let [own, other] = motions.each_ref().map(|motion| positions(motion, &phases));
+        for (a, b) in own
+            .chunks_exact(coordinates)
+            .zip(other.chunks_exact(coordinates))
+        {
             let own = a.iter().zip(b).map(|(a, b)| (a - b).abs());
             most[0] = own.fold(most[0], f64::max);
             most[1] = match &output {
