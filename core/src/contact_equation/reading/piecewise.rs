@@ -61,6 +61,9 @@ impl Piecewise<'_, '_> {
     /// What all outputs do over the period.
     pub(super) fn read(&self) -> Vec<Extent> {
         let sums = plain_outputs::all(self.system, self.parameters, self.omega);
+        if sums.is_empty() {
+            return Vec::new();
+        }
         let has_forces = |sum: &Option<Sum>| sum.as_ref().is_some_and(|sum| !sum.forces.is_empty());
         let signals = sums.iter().any(has_forces).then(|| self.signals());
         let stretches = self.stretches(signals.as_ref());
