@@ -158,7 +158,7 @@ impl Piecewise<'_, '_> {
             let of = &self.motion.equations.values.contacts[contact];
             let piece = stretch.pieces[contact];
             let facts = &self.system.law(of.law).facts().pieces[piece];
-            if facts.force == Variation::Zero {
+            if factor == 0.0 || facts.force == Variation::Zero {
                 continue;
             }
             if !facts.affine || !of.stands() {

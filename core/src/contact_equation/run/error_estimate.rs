@@ -63,11 +63,6 @@ impl Screened {
         self.apart
     }
 
-    /// No force was unknown: what it says is of rounding.
-    pub(in crate::contact_equation) fn is_of_rounding(&self) -> bool {
-        self.tails.is_empty() && self.stiffness.is_empty()
-    }
-
     /// Whether its numbers can be what they say: they may have been read from a file.
     pub(in crate::contact_equation) fn is_possible(&self) -> bool {
         let Self {

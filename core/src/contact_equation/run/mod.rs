@@ -109,14 +109,10 @@ impl<'r> Run<'r> {
         self.screened = screened;
     }
 
-    /// Forgets the finer equations, since there are others, and what they have said. Where no force is unknown that is of rounding, and holds of others without forces, too.
+    /// Forgets the finer equations, since there are others.
     pub(super) fn clear_finer(&mut self) {
         self.finer = None;
-        let has_forces = self.equations.skeleton.forces > 0;
-        let kept = |known: &Screened| !has_forces && known.is_of_rounding();
-        if !self.screened.as_ref().is_some_and(kept) {
-            self.screened = None;
-        }
+        self.screened = None;
     }
 
     pub(super) fn gaps<'g>(&'g self, at: At<'g>) -> Gaps<'g> {

@@ -102,8 +102,8 @@ crate::oscillator! {
 fn outputs_of_affine_forces_are_those_of_rules() {
     for (lean, c, omega) in [(0.0, 0.2, 1.1), (0.05, 0.0, 1.3)] {
         let system = Between {
-            lean,
             c,
+            lean,
             ..Between::default()
         };
         let request = FrequencyResponse::of(&system);
@@ -126,5 +126,42 @@ fn outputs_of_affine_forces_are_those_of_rules() {
         // Rounding takes no force beyond where its piece ends.
         let [push, pull] = [0, 1].map(|output| own.observed.outputs[output]);
         assert!(c > 0.0 || push.minimum == 0.0 && pull.maximum == 0.0);
+    }
+}
+
+crate::oscillator! {
+    /// Before an elastic stop.
+    Hardly(x) {
+        law stop(g) { g > 0 => 3*g, else => 0 }
+        param distance;
+        ddot(x) + 0.1*dot(x) + x + stop(x - distance) = cos(omega*t);
+        output push = force(stop);
+    }
+}
+
+/// The stop is closed by a ten-millionth of its distance: the square of its force is a difference of numbers that are `1e14` times as large.
+#[test]
+fn forces_of_contacts_that_hardly_close_are_read() {
+    // Of the linear response: (1 - 2^2)^2 + (0.1 2)^2.
+    let amplitude = 1.0 / 9.04_f64.sqrt();
+    let system = Hardly {
+        distance: (1.0 - 1e-7) * amplitude,
+    };
+    let request = FrequencyResponse::of(&system);
+    let exact = request
+        .by(Shooting::new())
+        .tolerance(1e-12)
+        .orbit(2.0)
+        .unwrap();
+    let request = FrequencyResponse::of(&system).by(ContactEquation::new());
+    let own = request.near_orbit(&exact.orbit).orbit(2.0).unwrap();
+    let [own, exact] = [own, exact].map(|found| found.observed.outputs[0]);
+    assert!(exact.maximum > 0.0);
+    for [own, exact] in [
+        [own.maximum, exact.maximum],
+        [own.mean.unwrap(), exact.mean.unwrap()],
+        [own.rms.unwrap(), exact.rms.unwrap()],
+    ] {
+        assert!((own / exact - 1.0).abs() < 1e-6, "{own:e} {exact:e}");
     }
 }
