@@ -144,6 +144,9 @@ pub(crate) struct Halted {
     pub(crate) point: CurvePoint,
     /// The point before, for a turn between the two that has not been seen yet.
     pub(crate) previous: Option<CurvePoint>,
+    /// The point before, where what happened in the step from it has been looked at.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) earlier: Option<CurvePoint>,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) before: Option<Vec<f64>>,
     pub(crate) first: CurvePoint,
@@ -221,11 +224,12 @@ impl Halted {
         let Self {
             point,
             previous,
+            earlier,
             before,
             first,
             ..
         } = self;
-        let points = [point, first].into_iter().chain(previous);
+        let points = [point, first].into_iter().chain(previous).chain(earlier);
         points
             .flat_map(|point| [&mut point.u, &mut point.tangent])
             .chain(before)

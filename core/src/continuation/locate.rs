@@ -298,6 +298,14 @@ impl ArcLength {
         }
     }
 
+    /// From so far before its first point on.
+    pub(crate) fn behind(self, way: f64) -> Self {
+        Self {
+            origin: self.origin - way,
+            ..self
+        }
+    }
+
     /// Along a form, which grows over the step.
     fn along_form(mut border: Vec<f64>, Step { before, next }: Step<'_>) -> Self {
         let rise = dot(&border, &next.u) - dot(&border, &before.u);

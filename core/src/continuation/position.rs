@@ -201,6 +201,7 @@ impl Position {
         Halted {
             point: self.point.clone(),
             previous: self.previous.clone(),
+            earlier: None,
             before: self.stepper.before.clone(),
             first: self.first.clone(),
             turned: self.turned,
@@ -223,6 +224,7 @@ impl Position {
         Box::new(Halted {
             point: self.point,
             previous: None,
+            earlier: None,
             before: None,
             first: self.first,
             turned: self.turned,

@@ -9,6 +9,9 @@ use crate::continuation::newton::{Border, Newton, NewtonError};
 /// Least scale of what oscillates, in sizes of what rounding makes of an update.
 const ROUNDINGS: f64 = 1e3;
 
+/// A slope that falls below this part of those at both ends within a step may have changed its sign there.
+const NEARLY: f64 = 0.5;
+
 /// Which way a curve is followed from a point that is corrected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Direction {
@@ -25,6 +28,9 @@ pub(super) struct Stepper {
     pub(super) step: f64,
     border: Vec<f64>,
     trial: Vec<f64>,
+    /// The predictor, then how far the solution is from it, and the length of that.
+    apart: Vec<f64>,
+    gone: f64,
     scale: Scale,
     /// Largest oscillation and mean so far.
     pub(super) largest: [f64; 2],
@@ -41,6 +47,8 @@ impl Stepper {
             options,
             step: options.steps.initial,
             border: vec![0.0; problem.unknowns() + 1],
+            apart: u.clone(),
+            gone: 0.0,
             trial: u,
             scale: Scale {
                 parameter,
@@ -201,9 +209,16 @@ impl Stepper {
                     angle = angle_between(newton.norm(), from, &point);
                 }
                 let norm = newton.norm();
+                // Where the equations themselves jump, as with samples, no short step leads on.
+                let nearly = if self.step > steps.initial {
+                    NEARLY
+                } else {
+                    0.0
+                };
+                // The plane of (1) has other parts of the curve in it, to which Newton's method may go by updates of which the first is small.
                 let looks_wrong = steps.turns_too_far(angle)
-                    || steps.is_too_far(distance)
-                    || passes_folds(norm, from, &point, self.options.newton.tolerance);
+                    || steps.is_too_far(distance.max(self.gone))
+                    || passes_folds(norm, [from, &point], self.options.newton.tolerance, nearly);
                 let shorter = steps.after_doubt(self.step).filter(|_| looks_wrong);
                 let Some(shorter) = shorter else {
                     newton.statistics.accepted_steps += 1;
@@ -298,6 +313,7 @@ impl Stepper {
         for (i, x) in self.trial.iter_mut().enumerate() {
             *x = from.u[i] + step * (from.tangent[i] + step * self.curvature[i]);
         }
+        self.apart.copy_from_slice(&self.trial);
         newton
             .norm()
             .linear_form(from.scale, &from.tangent, &mut self.border);
@@ -313,6 +329,10 @@ impl Stepper {
             self.scale,
             self.options.newton,
         )?;
+        for (apart, x) in self.apart.iter_mut().zip(&self.trial) {
+            *apart = x - *apart;
+        }
+        self.gone = newton.norm().length(from.scale, &self.apart);
         Ok((self.point(problem, newton), converged.first))
     }
 
@@ -397,11 +417,11 @@ fn angle_between(norm: &Norm, from: &CurvePoint, to: &CurvePoint) -> f64 {
 }
 
 /// Whether a step seems to have passed a pair of folds, or nearly: the parameter has the same direction at both ends, but the
-/// cubic through both ends and slopes turns back in between. A parameter that changes by no more than the tolerance of Newton's method
-/// does not tell: the curve is vertical.
+/// cubic through both ends and slopes turns back in between, or comes near to it: to a part of the smaller slope. A parameter that changes by no more than the
+/// tolerance of Newton's method does not tell: the curve is vertical.
 ///
 /// Source: Fritsch and Carlson (1980), Monotone piecewise cubic interpolation.
-fn passes_folds(norm: &Norm, from: &CurvePoint, to: &CurvePoint, tolerance: f64) -> bool {
+fn passes_folds(norm: &Norm, [from, to]: [&CurvePoint; 2], tolerance: f64, nearly: f64) -> bool {
     let last = from.u.len() - 1;
     let difference: Vec<f64> = to.u.iter().zip(&from.u).map(|(x, y)| x - y).collect();
     let length = norm.length(from.scale, &difference);
@@ -412,8 +432,9 @@ fn passes_folds(norm: &Norm, from: &CurvePoint, to: &CurvePoint, tolerance: f64)
     if a * b <= 0.0 || largest <= tolerance * from.scale.parameter {
         return false;
     }
-    // The slope is a + 2 c x + 3 d x^2 for x from 0 to 1; both ends have the sign of a.
+    // The slope is a + 2 c x + 3 d x^2 for x from 0 to 1; both ends have the sign of a. In the vertex it is a - c^2 / (3 d).
     let (c, d) = (3.0 * change - 2.0 * a - b, a + b - 2.0 * change);
     let vertex = -c / (3.0 * d);
-    vertex > 0.0 && vertex < 1.0 && c * c > 3.0 * a * d && d * a > 0.0
+    let least = (1.0 - c * c / (3.0 * a * d)) * a.abs();
+    vertex > 0.0 && vertex < 1.0 && d * a > 0.0 && least < nearly * a.abs().min(b.abs())
 }

@@ -13,7 +13,6 @@ use super::problem::ShootingProblem;
 use super::run::{Run, observe, relative};
 use super::test_functions::{Test, Tests};
 use crate::branches::engine::{self, Aim};
-use crate::branches::extreme;
 use crate::branches::moduli::{self, multipliers};
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{Change, Root, Touch, Zero};
@@ -25,6 +24,8 @@ use crate::orbit::observe::Accuracy;
 
 /// What rounding leaves in the value of a touch, where the distance from a level has a root to be told apart from.
 const TOUCHED: f64 = 2e-12;
+/// A test function of which more than this part is left, of what it is at an end of the step, jumps.
+const LEFT: f64 = 1e-3;
 /// What rounding leaves in the value of an event.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -99,7 +100,7 @@ impl Run<'_> {
         });
     }
 
-    /// Where a test function of these equations vanishes.
+    /// Where a test function of these equations vanishes, which is known to vanish in the step by other equations.
     fn root(
         &mut self,
         equations: &mut Equations,
@@ -112,8 +113,6 @@ impl Run<'_> {
         let mut tested = Tested { equations, other };
         let aim = if change.kind == EventKind::BranchPoint {
             Aim::Crossing
-        } else if extreme::corners(self.problem.system.as_ref()) {
-            Aim::Below(VANISHED)
         } else {
             Aim::Beside(VANISHED)
         };
@@ -151,6 +150,9 @@ impl Run<'_> {
             rounding,
         } = ErrorReference::new(self.problem, span, frame, size).ok()?;
         let moved = self.root(&mut others, &mut newton, step, options, change);
+        // Where it jumps in these equations alone nothing is known of the error.
+        let jumps = |root: &Root| root.located.test.abs() > LEFT * zero.least;
+        let moved = moved.filter(|moved| !jumps(moved) || jumps(&zero.root));
         self.statistics += newton.statistics;
         let root = &zero.root;
         let (read, error, root) = match &moved {

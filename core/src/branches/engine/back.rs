@@ -57,15 +57,20 @@ impl Engine {
                 [.., former, _] if is_same && self.way > 0.0 => Some(Former {
                     values: former.values.clone(),
                     pairs: former.pairs.clone(),
+                    slope: Some(former.point.parameter_slope()),
                     way: self.way,
                 }),
                 // It was changed before.
                 [_] if is_same => self.former.take(),
                 _ => None,
             };
+            if !is_same {
+                self.earlier = None;
+            }
             self.seen.clear();
             self.looked = None;
-            self.crossed = None;
+            let crossed = self.crossed.take().filter(|at| is_same && at.way > 0.0);
+            self.crossed = crossed.and_then(|at| Some(at.displaced_to(last?)));
             let seen = last.map(|at| Seen::at(problem, at, self.falls));
             self.seen.extend(seen);
         }

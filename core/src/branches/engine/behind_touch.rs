@@ -17,7 +17,7 @@
 use super::Engine;
 use super::heights::{Height, in_doubt};
 use super::inside::{CLOSE, LOOKS, is_on_way, noise_of, step_between};
-use super::seen::Seen;
+use super::seen::{Crossed, Seen};
 use crate::branches::problem::{BranchProblem, Test};
 use crate::continuation::locate::{ArcLength, inside_over};
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -71,19 +71,25 @@ impl Engine {
         behind.found()
     }
 
-    /// The same between the end of that step and the other end of the one behind it, as far as both and the touch tell.
+    /// The same between the end of that step and the other end of the one behind it, as far as both and the touch tell. Where the touch is the last
+    /// point in other unknowns, its multipliers and how far it is from there do.
     pub(super) fn farther_behind(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
-        touch: &Seen,
+        crossed: &Crossed,
         ends: [&Seen; 2],
     ) -> Vec<Seen> {
+        let touch = &crossed.touch;
         let length = touch.point.u.len();
         if ends.iter().any(|end| end.point.u.len() != length) {
             return Vec::new();
         }
-        let along = ArcLength::over(newton, step_between([touch, ends[1]]));
+        let along = if crossed.displaced {
+            ArcLength::over(newton, step_between(ends)).behind(crossed.way)
+        } else {
+            ArcLength::over(newton, step_between([touch, ends[1]]))
+        };
         let ways = ends.map(|end| along.at(&end.point.u));
         let part = ways[0] / ways[1];
         let goes_on = part > 0.0 && part < 1.0;

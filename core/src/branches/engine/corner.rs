@@ -62,6 +62,8 @@ const BENDS_WITHIN: f64 = 1e-5;
 /// jumps there.
 const AGAIN: f64 = 0.2;
 const SHORTEST_AGAIN: f64 = 1e-7;
+/// A corner that is farther away than this is none of the branch if test functions jump on the way to it.
+const FAR_LIMB: f64 = 1e-4;
 /// A step that is made again for what is within it is shorter by as much, and by as much if that is not known.
 const LONGEST: f64 = 0.95;
 const HALF: f64 = 0.5;
@@ -255,7 +257,16 @@ impl Engine {
             let mut both = [touch, &passed.next.point].into_iter();
             both.all(|at| tried.problem.describes(at))
         });
-        let passed = nearest.map(|(_, passed)| passed);
+        let passed = nearest.filter(|(distance, passed)| {
+            let end = &passed.corner.end;
+            // From where the level is not crossed the branch is smooth up to the touch.
+            let is_far = passed.extreme.is_clear() && *distance > FAR_LIMB;
+            let Tried {
+                problem, newton, ..
+            } = &mut tried;
+            !(is_far && self.jumps(*problem, newton, end, false))
+        });
+        let passed = passed.map(|(_, passed)| passed);
         if let Some(passed) = &passed {
             let after = tried.problem.points();
             self.behind = self.keep_corner(&mut tried, at, passed, after);

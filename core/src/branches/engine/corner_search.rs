@@ -228,21 +228,31 @@ impl CornerSearch<'_> {
     /// of the height. None if it turns back on the way.
     fn way(&mut self, corner: &Corner, height: f64) -> Option<Vec<Beside>> {
         let mut way: Vec<Beside> = Vec::new();
-        let (mut from, mut next) = (height, WAY * height);
+        // Heights between which the next orbit is: of the last one, or the lowest above the other at which none was found, and of one to which the branch has
+        // bent too far.
+        let (mut high, mut low) = (height, None);
+        let mut next = WAY * height;
         while next.abs() > FIRST / WAY {
-            let Some(beside) = self.at_height(corner, next) else {
-                next *= WAY;
-                continue;
-            };
+            let beside = self.at_height(corner, next);
             let last = way.last().map_or(self.approach.from, |last| &last.point);
-            if self.bend(last, &beside.point) > 0.0 {
-                way.push(beside);
-                (from, next) = (next, WAY * next);
-            } else if next / from < CLOSEST {
-                next = from * (next / from).sqrt();
-            } else {
+            match (beside, low) {
+                (Some(beside), _) if self.bend(last, &beside.point) > 0.0 => {
+                    way.push(beside);
+                    (high, low, next) = (next, None, WAY * next);
+                    continue;
+                }
+                (None, None) => {
+                    next *= WAY;
+                    continue;
+                }
+                (Some(_), _) => low = Some(next),
+                (None, Some(_)) => high = next,
+            }
+            let part = low.map_or(1.0, |low| low / high);
+            if part > CLOSEST {
                 return None;
             }
+            next = high * part.sqrt();
         }
         Some(way)
     }

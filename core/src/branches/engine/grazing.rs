@@ -9,7 +9,8 @@ use super::Engine;
 use super::counted::PLACES;
 use super::grazing_search::{Approach, Reached, on_the_way};
 use super::grazing_within_step::Steps;
-use super::seen::Seen;
+use super::inside::step_between;
+use super::seen::{Crossed, Seen};
 use crate::branches::extreme::{
     Bend, Extreme, Passage, appears, crossings, distinct, is_copy, passed,
 };
@@ -150,9 +151,9 @@ impl Engine {
         self.touched = search.found;
         self.bent.append(&mut search.bent);
         let orbits = search.orbits;
-        if let (Some(touch), [.., a, b]) = (behind, &self.seen[..]) {
+        if let (Some(crossed), [.., a, b]) = (behind, &self.seen[..]) {
             let ends = [a.clone(), b.clone()];
-            let inner = self.farther_behind(problem, newton, &touch, [a, b]);
+            let inner = self.farther_behind(problem, newton, &crossed, [a, b]);
             self.record_between(problem, newton, ends, inner, after);
             if self.ended.is_some() {
                 return;
@@ -246,11 +247,23 @@ impl Engine {
             let crosses = |end: usize| crossed.as_ref().is_some_and(|at| at.u == ends[end].point.u);
             let other = before.checked_sub(1).map(|place| &self.seen[place]);
             if let Some(other) = other.filter(|_| crosses(0)) {
-                earlier.extend(self.farther_behind(problem, newton, &touch, [&ends[0], other]));
+                let touch = touch.clone();
+                let crossed = Crossed {
+                    touch,
+                    way: 0.0,
+                    displaced: false,
+                };
+                earlier.extend(self.farther_behind(problem, newton, &crossed, [&ends[0], other]));
             }
-            if crosses(1) && along.at(&touch.point.u) / whole > farthest {
+            // Behind another step it is not known how far the last point is from it.
+            if place == 1 && crosses(1) && along.at(&touch.point.u) / whole > farthest {
                 farthest = along.at(&touch.point.u) / whole;
-                self.crossed = Some(touch.clone());
+                let way = ArcLength::over(newton, step_between([&touch, &ends[1]]));
+                self.crossed = Some(Crossed {
+                    touch: touch.clone(),
+                    way: way.at(&ends[1].point.u),
+                    displaced: false,
+                });
             }
             if let Some(end) = crossed.filter(|_| inside) {
                 let end = Seen::at(problem, &end, ends[0].falls);

@@ -8,6 +8,8 @@
 //! Where a branch turns and the bordered determinant changes its sign as well, that is one place, where it ends on another branch, or
 //! two, a fold and a crossing: orbits on both sides of the turn tell.
 
+use std::iter;
+
 use super::Engine;
 use super::heights::{Height, in_doubt};
 use super::meeting::Meeting;
@@ -42,7 +44,11 @@ impl Engine {
         let mut parts = self.through_narrow(problem, newton, [a, b]);
         self.doubted = parts.len() > 2;
         self.divide_parts(problem, newton, &mut parts, 0);
-        if let Some(earlier) = earlier {
+        let displaced = self.earlier.take().filter(|_| earlier.is_none());
+        let displaced = displaced.filter(|at| at.u.len() == parts[0].point.u.len());
+        let displaced = displaced.map(|at| Seen::at(problem, &at, parts[0].falls));
+        let former = self.former.take().filter(|_| displaced.is_none());
+        if let Some(earlier) = earlier.or(displaced.as_ref()) {
             let mut looks = Vec::new();
             for sought in sought_from(problem, &parts[0]) {
                 if sought.is_seen(problem, &parts, earlier) {
@@ -64,7 +70,7 @@ impl Engine {
                 }
             }
         }
-        if let Some(former) = self.former.take() {
+        if let Some(former) = former {
             self.divide_behind(problem, newton, former, &mut parts);
         }
         self.note_divided(problem, &parts, after);
@@ -85,8 +91,8 @@ impl Engine {
         parts
     }
 
-    /// Divides the first step behind a point that has other unknowns, as far as multipliers tell: what else there is to compare is of the
-    /// equations.
+    /// Divides the first step behind a point that has other unknowns, as far as slopes and multipliers tell: what else there is to compare is of
+    /// the equations.
     fn divide_behind(
         &self,
         problem: &mut dyn BranchProblem,
@@ -97,7 +103,9 @@ impl Engine {
         let mut looks = Vec::new();
         let way = Some(former.way);
         let earlier = former.before(&parts[0]);
-        for sought in of_multipliers(problem, &parts[0]) {
+        let slope = Sought::Test(Test::Slope);
+        let sought = of_multipliers(problem, &parts[0]).into_iter();
+        for sought in iter::once(slope).chain(sought) {
             if sought.is_seen(problem, parts, &earlier) {
                 continue;
             }

@@ -17,7 +17,7 @@ use super::Engine;
 use super::grazing_search::{Approach, Reached};
 use super::seen::{Seen, changes};
 use super::zero::is_crossing;
-use crate::branches::extreme::{Bend, Extreme, Passage, is_copy, passed};
+use crate::branches::extreme::{Bend, Extreme, Passage, crossings, is_copy, passed};
 use crate::branches::problem::{BranchProblem, Change, Test};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::Newton;
@@ -36,7 +36,7 @@ const SHORTEST: f64 = 1e-4;
 impl Engine {
     /// Whether the step to a point that is not kept yet has left out two turns, or leads to another limb. Then the walk is to go back.
     pub(super) fn leaps(&mut self, problem: &mut dyn BranchProblem, next: &CurvePoint) -> bool {
-        if !problem.seeks_touches() || problem.force_jumps() {
+        if !problem.seeks_touches() {
             return false;
         }
         let last = self.seen.last().map(|seen| seen.point.clone());
@@ -57,6 +57,12 @@ impl Engine {
         let mut newton = Newton::new(problem.equations());
         let length = newton.norm().length(before.scale, &step.difference());
         let through = without_copies(passed(&here.extremes, &there.extremes));
+        // Touches where the force jumps are looked for by themselves, and test functions jump there.
+        let is_apart =
+            through.is_empty() && crossings(&here.extremes) == crossings(&there.extremes);
+        if problem.force_jumps() && !is_apart {
+            return false;
+        }
         if length > SHORTEST
             && !through.iter().any(is_corner)
             && self.jumps(problem, &mut newton, next, through.is_empty())
@@ -93,7 +99,7 @@ impl Engine {
     /// Whether the branch turns or is crossed between the last point and another one at no place that can be found: test functions jump from one
     /// limb to another. A turn is asked for where a gap passes its level: where the parameter goes the other way behind it, the walk has
     /// gone round the fold.
-    fn jumps(
+    pub(super) fn jumps(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,

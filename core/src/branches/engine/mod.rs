@@ -53,7 +53,7 @@ use grazing::Bent;
 use grazing::Gaps;
 use inside::distance;
 use joint::Joint;
-use seen::{Former, Seen, changes, is_modulus};
+use seen::{Crossed, Former, Seen, changes, is_modulus};
 use walk::Looked;
 pub(crate) use walk::{Places, Walk};
 use zero::Recorded;
@@ -81,6 +81,8 @@ struct Engine {
     seen: Vec<Seen>,
     /// The one before these, where it has other unknowns.
     former: Option<Former>,
+    /// Where that is in the present unknowns, about.
+    earlier: Option<CurvePoint>,
     /// How long the last step was.
     way: f64,
     /// Whether the parameter falls, as far as the walk has come.
@@ -118,7 +120,7 @@ struct Engine {
     /// Where levels are touched in the last step.
     touched: Vec<f64>,
     /// The last of them, if its level is crossed at the end of that step.
-    crossed: Option<Seen>,
+    crossed: Option<Crossed>,
     /// Touches at which the branch or its multipliers bend, so far.
     bent: Vec<Bent>,
     /// The last step was divided in a narrow place of a law.
@@ -167,7 +169,7 @@ fn go_on(
     mut contraction: f64,
 ) -> Result<Stop, NewtonError> {
     let options = engine.options;
-    // Where the walk was halted last, in case that other unknowns fail there.
+    // Where the walk was halted last, in the unknowns that it had, in case that the present ones fail there.
     let mut last: Option<Box<Halted>> = None;
     loop {
         let begun = start.clone();
@@ -192,6 +194,7 @@ fn go_on(
                 let Some(halted) = stuck.filter(|_| problem.couple_fully()) else {
                     return Ok(engine.ended.unwrap_or_else(|| engine.named(problem, stop)));
                 };
+                last = None;
                 Start::At(halted)
             }
             Ok(Walked {
@@ -202,6 +205,8 @@ fn go_on(
                     return Ok(stop);
                 }
                 if let Some(from) = engine.moved(&halted) {
+                    // The present unknowns have led on: the former ones are gone.
+                    last = None;
                     start = from;
                     continue;
                 }
@@ -250,6 +255,7 @@ impl Engine {
             options,
             seen: Vec::new(),
             former: None,
+            earlier: None,
             way: 0.0,
             falls: None,
             divided: Vec::new(),
@@ -333,7 +339,10 @@ impl Engine {
         self.behind = None;
         let before = halted.previous.as_ref().filter(|_| problem.seeks_touches());
         let gaps = before.and_then(|before| self.gaps_at(problem, before));
+        resized.earlier = self.earlier_than(halted);
         problem.remap(&mut resized);
+        let is_known = |earlier: &CurvePoint| earlier.u.len() == resized.point.u.len();
+        self.earlier = resized.earlier.take().filter(is_known);
         match (&halted.previous, &resized.previous) {
             (_, Some(there)) => {
                 self.keep_gaps(gaps, Some(there));
@@ -348,6 +357,15 @@ impl Engine {
             (None, None) => {}
         }
         resized
+    }
+
+    /// The point before that where the walk was halted, if the step between them has been looked at.
+    fn earlier_than(&self, halted: &Halted) -> Option<CurvePoint> {
+        let [.., earlier, last] = &self.seen[..] else {
+            return None;
+        };
+        let looked_at = halted.previous.is_none() && last.point == halted.point;
+        looked_at.then(|| earlier.point.clone())
     }
 
     /// Where the walk goes on, if not from where it was halted: behind a corner, or from the point before the last one.

@@ -20,13 +20,44 @@ pub(super) struct Seen {
     pub(super) falls: Option<bool>,
 }
 
-/// The point before the first one that is remembered, where that has other unknowns. What multipliers were there counts still.
+/// A touch whose level is crossed from there on to the last point.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Crossed {
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub(super) touch: Seen,
+    /// How far the last point is behind it, in the norm of the unknowns that both were found in; zero where that is not known.
+    #[cfg_attr(feature = "serde", serde(default, with = "crate::serialise"))]
+    pub(super) way: f64,
+    /// Its place is not known in the present unknowns, and it has those of the last point.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(super) displaced: bool,
+}
+
+impl Crossed {
+    /// After a change of unknowns: its multipliers are known still, and how far the last point is behind it.
+    pub(super) fn displaced_to(mut self, last: &CurvePoint) -> Self {
+        self.touch.point = last.clone();
+        self.displaced = true;
+        self
+    }
+
+    /// Whether it may be one: it may have been read from a file.
+    pub(super) fn is_possible(&self) -> bool {
+        self.way.is_finite()
+    }
+}
+
+/// The point before the first one that is remembered, where that has other unknowns. What multipliers were there counts still, and which way the parameter went.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Former {
     pub(super) values: Vec<TestValue>,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) pairs: Option<Vec<Complex<f64>>>,
+    /// The slope of the parameter.
+    #[cfg_attr(feature = "serde", serde(default, with = "crate::serialise"))]
+    pub(super) slope: Option<f64>,
     /// How long the step from it was, in the norm of its unknowns: that of others is another one by less than second differences are trusted to.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) way: f64,
@@ -35,8 +66,13 @@ pub(super) struct Former {
 impl Former {
     /// As a point that is as far from another one as the step was long.
     pub(super) fn before(self, next: &Seen) -> Seen {
+        let mut point = next.point.clone();
+        let slope = self.slope.map(|slope| slope * point.scale.parameter);
+        if let Some(of_parameter) = point.tangent.last_mut() {
+            *of_parameter = slope.unwrap_or(f64::NAN);
+        }
         Seen {
-            point: next.point.clone(),
+            point,
             values: self.values,
             pairs: self.pairs,
             falls: next.falls,
@@ -45,7 +81,8 @@ impl Former {
 
     /// Whether it may be one of so many test functions: it may have been read from a file.
     pub(super) fn is_possible(&self, tests: usize) -> bool {
-        self.values.len() == tests && self.way.is_finite() && self.way > 0.0
+        let slopes = self.slope.is_none_or(f64::is_finite);
+        slopes && self.values.len() == tests && self.way.is_finite() && self.way > 0.0
     }
 }
 

@@ -7,7 +7,7 @@ use super::Engine;
 use super::grazing::Bent;
 use super::joint::Joint;
 use super::narrow::NARROWED;
-use super::seen::{Former, Seen};
+use super::seen::{Crossed, Former, Seen};
 use crate::branches::problem::Test;
 use crate::branches::record::Kept;
 use crate::continuation::follow::{CurvePoint, FollowOptions, Halted};
@@ -23,6 +23,8 @@ pub(crate) struct Walk {
     seen: Vec<Seen>,
     #[cfg_attr(feature = "serde", serde(default))]
     former: Option<Former>,
+    #[cfg_attr(feature = "serde", serde(default))]
+    earlier: Option<CurvePoint>,
     /// How long the last step was.
     #[cfg_attr(feature = "serde", serde(default, with = "crate::serialise"))]
     way: f64,
@@ -38,7 +40,7 @@ pub(crate) struct Walk {
     touched: Vec<f64>,
     /// The last of them, if its level is crossed from there on.
     #[cfg_attr(feature = "serde", serde(default))]
-    crossed: Option<Seen>,
+    crossed: Option<Crossed>,
     /// Touches at which the branch bends.
     #[cfg_attr(feature = "serde", serde(default))]
     bent: Vec<Bent>,
@@ -104,14 +106,19 @@ impl Walk {
         };
         let is_point = |point: &CurvePoint| is_vector(&point.u) && is_vector(&point.tangent);
         let points = [point, first].into_iter().chain(previous);
-        let seen = self.seen.iter().chain(&self.crossed);
+        let seen = self
+            .seen
+            .iter()
+            .chain(self.crossed.as_ref().map(|at| &at.touch));
         let points = points.chain(seen.map(|seen| &seen.point));
+        let points = points.chain(&self.earlier);
         let are_points = points.into_iter().all(is_point);
         are_points
             && before.iter().all(is_vector)
             && self.looked.iter().all(|looked| is_vector(&looked.at))
             && self.narrowed <= NARROWED
             && self.touched.iter().all(|value| value.is_finite())
+            && self.crossed.iter().all(Crossed::is_possible)
             && self.bent.iter().all(Bent::is_possible)
             && self.joint.as_ref().is_none_or(Joint::is_possible)
             && self.halted.is_possible()
@@ -127,7 +134,10 @@ impl Walk {
     /// Whether its points have so many test functions, and nothing was divided for another one.
     pub(crate) fn tests(&self, tests: usize) -> bool {
         let is_one = |test: &Test| !matches!(test, Test::Watched(index) if *index >= tests);
-        let mut seen = self.seen.iter().chain(&self.crossed);
+        let mut seen = self
+            .seen
+            .iter()
+            .chain(self.crossed.as_ref().map(|at| &at.touch));
         seen.all(|seen| seen.values.len() == tests)
             && self.former.iter().all(|former| former.is_possible(tests))
             && self.divided.iter().all(|(_, test)| is_one(test))
@@ -142,6 +152,7 @@ impl Engine {
             contraction,
             seen: self.seen.clone(),
             former: self.former.clone(),
+            earlier: self.earlier.clone(),
             way: self.way,
             falls: self.falls,
             divided: self.divided.clone(),
@@ -161,6 +172,7 @@ impl Engine {
         let engine = Self {
             seen: walk.seen,
             former: walk.former,
+            earlier: walk.earlier,
             way: walk.way,
             falls: walk.falls,
             divided: walk.divided,

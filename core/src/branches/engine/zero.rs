@@ -350,7 +350,7 @@ impl<'s> Search<'s> {
     fn root(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Option<Root> {
         let aim = if is_crossing(problem, self.change) {
             Aim::Crossing
-        } else if problem.corners() {
+        } else if self.may_jump(problem) {
             Aim::Below(problem.aim())
         } else {
             Aim::Beside(problem.aim())
@@ -416,7 +416,7 @@ impl<'s> Search<'s> {
 pub(crate) enum Aim {
     /// The test function is driven below this.
     Below(f64),
-    /// The same, also where corrections fail in the middle of the step: where there is no corner, orbits are found beside.
+    /// The same, also where corrections fail in the middle of the step: where it has no corner, orbits are found beside.
     Beside(f64),
     /// The matrix of Newton's method is singular there: interpolation.
     Crossing,

@@ -445,6 +445,24 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         numbers.all(|x| x.is_finite()).then_some(found)
     }
 
+    /// Whether a halted walk keeps its unknowns, and something else of it changes.
+    fn keeps_unknowns(&mut self, halted: &mut Halted) -> bool {
+        if std::mem::take(&mut self.passes_first) {
+            halted.passes_first();
+            self.moved = None;
+            self.before = None;
+            return true;
+        }
+        if let Some(found) = self.first_here.take() {
+            let first = self.first.as_mut();
+            self.moved = first.map(|first| first.is_at(found.u.clone()));
+            halted.first = found;
+            self.before = None;
+            return true;
+        }
+        false
+    }
+
     fn keep_point(&mut self, at: &CurvePoint, read: ReadOrbit) -> bool {
         let ReadOrbit { point, map, .. } = read;
         let values = map.as_ref().map(|map| self.run.last_map.values(map));
@@ -667,21 +685,12 @@ impl BranchProblem for ContactBranch<'_, '_> {
     }
 
     fn remap(&mut self, halted: &mut Halted) {
-        if std::mem::take(&mut self.passes_first) {
-            halted.passes_first();
-            self.moved = None;
-            self.before = None;
-            return;
-        }
-        if let Some(found) = self.first_here.take() {
-            let first = self.first.as_mut();
-            self.moved = first.map(|first| first.is_at(found.u.clone()));
-            halted.first = found;
-            self.before = None;
+        if self.keeps_unknowns(halted) {
             return;
         }
         self.moved = None;
         let Some(next) = self.next.take() else {
+            self.before = None;
             return;
         };
         let length = next.u.len();
@@ -694,6 +703,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
         }
         halted.point.u.clone_from(&next.u);
         halted.previous = halted.previous.as_ref().and_then(&mut point);
+        halted.earlier = halted.earlier.as_ref().and_then(&mut point);
         if let Some(previous) = &halted.previous {
             look_ahead(&mut halted.point, previous, &next.equations);
         }

@@ -4,6 +4,8 @@
 use hertzian::structure::{Contact, DMatrix, Structure};
 use hertzian::{Branch, ContactEquation, EventKind, FrequencyResponse, Shooting, System};
 
+use crate::bifurcations::limbs::agrees;
+
 hertzian::law! {
     /// Elastic stop
     pub Elastic(gap, k) { gap > 0 => k*gap, else => 0 }
@@ -160,4 +162,42 @@ fn a_torus_beside_a_fold() {
             "{found:?}"
         );
     }
+}
+
+hertzian::oscillator! {
+    /// Before a ball with the damping of Hunt and Crossley (1975) that does not pull.
+    Pressed(x) {
+        param drive;
+        law stop(gap) { gap > 0 => max(0, 20*gap^1.5*(1 + 0.8*dot(gap))), else => 0 }
+        ddot(x) + 0.04*dot(x) + x + stop(x - 0.6) = drive*cos(omega*t);
+    }
+}
+
+/// Six doublings, of which shooting downwards has three in one step, with a touch at 0.48833: one before it and two behind.
+#[test]
+fn three_doublings_within_one_step_are_found() {
+    let system = Pressed { drive: 0.6801 };
+    agrees(&system, [0.4, 2.2]);
+    let request = FrequencyResponse::of(&system).from(2.2).to(0.4);
+    let branch = request.by(Shooting::new()).run().unwrap();
+    assert_eq!(branch.events(EventKind::PeriodDoubling).count(), 6);
+}
+
+hertzian::oscillator! {
+    /// A spring of two stiffnesses.
+    Bilinear(x) {
+        law spring(gap) { gap > 0 => 9*gap, else => gap }
+        ddot(x) + 0.08*dot(x) + spring(x) = 0.5005*cos(omega*t) + 0.4;
+    }
+}
+
+/// Downwards two doublings, at 0.58853 and 0.58630, are in the step behind the one with the touch at 0.58918, and the contact equation goes over to other unknowns
+/// between them.
+#[test]
+fn two_doublings_behind_a_touch_and_other_unknowns_are_found() {
+    let system = Bilinear {};
+    agrees(&system, [0.58, 0.68]);
+    let request = FrequencyResponse::of(&system).from(0.68).to(0.58);
+    let branch = request.by(ContactEquation::new()).run().unwrap();
+    assert_eq!(branch.events(EventKind::PeriodDoubling).count(), 4);
 }

@@ -32,7 +32,7 @@ fn events(branch: &Branch) -> Vec<(EventKind, f64, f64)> {
 }
 
 /// Every walk finds what the first one does.
-fn agrees(system: &dyn System, [from, to]: [f64; 2]) {
+pub(super) fn agrees(system: &dyn System, [from, to]: [f64; 2]) {
     let mut first = None;
     for ends in [[from, to], [to, from]] {
         let request = FrequencyResponse::of(system).from(ends[0]).to(ends[1]);
@@ -45,6 +45,8 @@ fn agrees(system: &dyn System, [from, to]: [f64; 2]) {
             let wanted = first.get_or_insert_with(|| found.clone());
             assert_eq!(found.len(), wanted.len(), "{ends:?}: {found:?} {wanted:?}");
             for (found, wanted) in found.iter().zip(&*wanted) {
+                assert_eq!(found.0, wanted.0, "{found:?} {wanted:?}");
+                assert!(found.2 < 1e-6, "{found:?}");
                 let off = (found.1 - wanted.1).abs();
                 assert!(
                     off <= 3.0 * (found.2 + wanted.2) + 1e-14,

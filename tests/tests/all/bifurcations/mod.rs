@@ -21,6 +21,7 @@ mod halved;
 mod hidden;
 mod interrupted;
 mod limbs;
+mod limbs_of_jumps;
 mod meeting;
 mod mirrored;
 mod narrow;
