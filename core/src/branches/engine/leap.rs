@@ -21,6 +21,7 @@ use crate::branches::extreme::{Bend, Extreme, Passage, crossings, is_copy, passe
 use crate::branches::problem::{BranchProblem, Change, Test};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::Newton;
+use crate::event::EventKind;
 use crate::numeric::linear::dot;
 
 /// A touch that is to be expected farther away than this part of the step is located.
@@ -112,7 +113,8 @@ impl Engine {
         let next = Seen::at(problem, next, self.falls);
         let mut found = changes(problem, &last, &next);
         let turns = |change: &Change| change.test == Test::Slope;
-        if only_crossed && found.iter().any(turns) {
+        let folds = |change: &Change| turns(change) && change.kind == EventKind::Fold;
+        if only_crossed && found.iter().any(folds) {
             return false;
         }
         found.retain(|change| turns(change) || is_crossing(problem, *change));

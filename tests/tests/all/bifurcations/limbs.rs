@@ -113,3 +113,31 @@ fn orbits_on_three_limbs() {
         assert!((found - wanted).abs() < 1e-8, "{found} {wanted}");
     }
 }
+
+hertzian::oscillator! {
+    /// A spring of two stiffnesses
+    Bilinear(x) {
+        law spring(gap) { gap > 0 => 9*gap, else => gap }
+        ddot(x) + 0.08*dot(x) + spring(x) = 0.3902*cos(omega*t) + 0.4;
+    }
+}
+
+/// Downwards a step of the contact equation leads from 0.486, where the parameter rises before a fold, to orbits of 0.505 that were passed, where it falls: slope and determinant
+/// change their signs at no place.
+#[test]
+fn a_step_back_to_orbits_that_were_passed() {
+    let request = FrequencyResponse::of(&Bilinear {}).from(3.5).to(0.4);
+    let by_contact_equation = request.clone().by(ContactEquation::new()).run().unwrap();
+    let by_shooting = request.by(Shooting::new()).run().unwrap();
+    let [one, other] = [by_contact_equation, by_shooting].map(|branch| {
+        assert_eq!(branch.stopped, Stop::ReachedEnd);
+        assert_eq!(branch.turns, []);
+        let folds = branch.events(EventKind::Fold);
+        folds.map(|event| event.point.value).collect::<Vec<f64>>()
+    });
+    assert_eq!(one.len(), 12);
+    assert_eq!(other.len(), 12);
+    for (one, other) in one.iter().zip(&other) {
+        assert!((one - other).abs() < 1e-12, "{one} {other}");
+    }
+}
