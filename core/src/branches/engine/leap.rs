@@ -98,8 +98,8 @@ impl Engine {
     }
 
     /// Whether the branch turns or is crossed between the last point and another one at no place that can be found: test functions jump from one
-    /// limb to another. A turn is asked for where a gap passes its level: where the parameter goes the other way behind it, the walk has
-    /// gone round the fold.
+    /// limb to another. A turn is asked for where a gap passes its level, where the parameter goes the other way behind it, since the walk has
+    /// gone round the fold; and where the bordered determinant changes its sign with it.
     pub(super) fn jumps(
         &self,
         problem: &mut dyn BranchProblem,
