@@ -133,6 +133,15 @@ impl Tests {
         }
     }
 
+    /// Whether determinants have the signs of others, and as many multipliers are outside of the unit circle.
+    pub(crate) fn tell_as(&self, other: &Self) -> bool {
+        let outside = |tests: &Self| tests.multipliers.iter().filter(|m| m.norm() > 1.0).count();
+        let alike = |a: f64, b: f64| a.is_nan() || b.is_nan() || a * b > 0.0;
+        alike(self.minus, other.minus)
+            && alike(self.plus, other.plus)
+            && outside(self) == outside(other)
+    }
+
     pub(crate) fn value(&self, test: Test) -> f64 {
         match test {
             Test::Slope => self.slope,

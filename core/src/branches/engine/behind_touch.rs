@@ -9,7 +9,8 @@
 //!
 //! of the way `s` along the branch, in units `l` of that to the end of the step, and may pass zero twice in a part of it that is small in `s`. Orbits
 //! are computed at two places in `r`, and where between these (1) or (2) of [`inside`](super::inside) come down to zero in `r`. The same is
-//! done in the next step, since the first may end next to the touch.
+//! done in the next step, since the first may end next to the touch. Where the force jumps determinants go as `a + b / r` instead, as
+//! [behind a corner](super::beyond_corner), and `r` times that is smooth: it is looked at in the first step from where the walk goes on.
 //!
 //! Source: Nordmark (1991), Non-periodic motion caused by grazing incidence in an impact oscillator, Journal of Sound and Vibration 145 (the root);
 //! di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2.
@@ -21,6 +22,7 @@ use super::seen::{Crossed, Seen};
 use crate::branches::problem::{BranchProblem, Test};
 use crate::continuation::locate::{ArcLength, inside_over};
 use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::event::EventKind;
 
 /// Where orbits are computed in any case, by (1).
 const PLACES: [f64; 2] = [0.3, 0.65];
@@ -39,6 +41,8 @@ struct Behind<'s> {
     /// From the touch on, with `r`.
     known: Vec<(f64, Seen)>,
     falls: Option<bool>,
+    /// Determinants go as `1 / r`.
+    unbounded: bool,
     options: NewtonOptions,
 }
 
@@ -59,6 +63,7 @@ impl Engine {
             range: [0.0, 1.0],
             known: vec![(0.0, touch.clone()), (1.0, end.clone())],
             falls: touch.falls,
+            unbounded: false,
             options: self.options.newton,
         };
         let contraction = newton.contraction();
@@ -72,12 +77,14 @@ impl Engine {
     }
 
     /// The same between the end of that step and the other end of the one behind it, as far as both and the touch tell. Where the touch is the last
-    /// point in other unknowns, its multipliers and how far it is from there do.
+    /// point in other unknowns, its multipliers and how far it is from there do. Where the force jumps, the orbit before both that is `earlier` than they are
+    /// tells, and the touch does not.
     pub(super) fn farther_behind(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         crossed: &Crossed,
+        earlier: Option<&Seen>,
         ends: [&Seen; 2],
     ) -> Vec<Seen> {
         let touch = &crossed.touch;
@@ -97,14 +104,25 @@ impl Engine {
             return Vec::new();
         }
         let middle = part.sqrt();
-        let known = [(0.0, touch), (middle, ends[0]), (1.0, ends[1])];
+        let inner = |at: &Seen| {
+            let r = (along.at(&at.point.u) / ways[1]).sqrt();
+            (r > 0.0 && r < middle).then_some(r)
+        };
+        let earlier = earlier.filter(|at| at.point.u.len() == length);
+        let first = if crossed.jumps {
+            earlier.and_then(|at| Some((inner(at)?, at)))
+        } else {
+            Some((0.0, touch))
+        };
+        let known = first.into_iter().chain([(middle, ends[0]), (1.0, ends[1])]);
         let mut behind = Behind {
             begin: ends[0],
             whole: ways[1],
             along,
             range: [middle, 1.0],
-            known: known.map(|(r, seen)| (r, seen.clone())).into(),
+            known: known.map(|(r, seen)| (r, seen.clone())).collect(),
             falls: ends[0].falls,
+            unbounded: crossed.jumps,
             options: self.options.newton,
         };
         let contraction = newton.contraction();
@@ -180,10 +198,15 @@ impl Behind<'_> {
             .collect();
         for test in of_map.into_iter().map(Test::Watched) {
             let noise = noise_of(problem, test, self.begin);
+            let of_modulus = match test {
+                Test::Slope => true,
+                Test::Watched(of) => problem.watched()[of].kind == EventKind::NeimarkSacker,
+            };
+            let unbounded = self.unbounded && !of_modulus;
             // Parts in which no orbit is found, as next to the touch, hide none of the others.
             let mut shut: Vec<f64> = Vec::new();
             for _ in 0..LOOKS {
-                let Some(heights) = self.heights(test, noise) else {
+                let Some(heights) = self.heights(test, noise, unbounded) else {
                     break;
                 };
                 let parts = heights
@@ -208,16 +231,19 @@ impl Behind<'_> {
         }
     }
 
-    /// How far a test function is above zero at all places, if it is so everywhere.
-    fn heights(&self, test: Test, noise: f64) -> Option<Vec<Height>> {
+    /// How far a test function is above zero at all places, if it is so everywhere; times `r` if it is unbounded.
+    fn heights(&self, test: Test, noise: f64, unbounded: bool) -> Option<Vec<Height>> {
         let values = self.known.iter().map(|(_, seen)| seen.value(test));
         let reference = values.clone().map(|value| value.exponent);
         let reference = reference.fold(f64::NEG_INFINITY, f64::max);
         let sign = self.begin.value(test).mantissa.signum();
         let places = self.known.iter().map(|(place, _)| *place);
-        let heights = places.zip(values).map(|(place, value)| Height {
-            place,
-            height: sign * value.relative_to(reference),
+        let heights = places.zip(values).map(|(place, value)| {
+            let weight = if unbounded { place } else { 1.0 };
+            Height {
+                place,
+                height: weight * sign * value.relative_to(reference),
+            }
         });
         let heights: Vec<Height> = heights.collect();
         let above = heights.iter().all(|known| known.height > noise);

@@ -52,13 +52,13 @@ pub(super) struct Beyond<'s, 'c> {
 }
 
 impl Engine {
-    /// Orbits between a corner and another one on the side of it where the level is crossed, from which the branch `comes` or to which it goes: both
-    /// ends and as many between them as it takes to tell which test functions change their sign.
+    /// Orbits between a corner and others on the side of it where the level is crossed, the nearest first, from which the branch `comes` or to which it
+    /// goes: all ends and as many between them as it takes to tell which test functions change their sign.
     pub(super) fn beyond_corner(
         &self,
         search: CornerSearch<'_>,
         corner: &Corner,
-        outer: Beside,
+        outer: &[Beside],
         comes: bool,
     ) -> Vec<Seen> {
         let mut beyond = Beyond {
@@ -71,11 +71,14 @@ impl Engine {
             point: if comes { &corner.end } else { &corner.begin }.clone(),
             extreme: corner.crossed,
         };
-        let highest = outer.extreme.above;
+        let highest = outer.first().map_or(0.0, |nearest| nearest.extreme.above);
         let lowest = first.extreme.above.abs();
         beyond.keep(first);
         let is_beside = highest.abs() <= lowest;
-        beyond.keep(outer);
+        let count = if is_beside { 1 } else { outer.len() };
+        for outer in &outer[..count] {
+            beyond.keep(outer.clone());
+        }
         if is_beside {
             return beyond.in_order(comes, self.falls);
         }

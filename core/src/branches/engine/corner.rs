@@ -38,10 +38,12 @@ use super::grazing::Gaps;
 use super::grazing_search::Approach;
 use super::grazing_within_step::Steps;
 use super::inside::distance;
+use super::seen::{Crossed, Seen};
 use super::{Engine, Looked};
 use crate::branches::extreme::{Bend, Extreme, passed};
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Step, Stop};
+use crate::continuation::locate::ArcLength;
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Norm;
 use crate::numeric::linear::dot;
@@ -273,13 +275,45 @@ impl Engine {
             self.seen.clear();
             self.gaps.clear();
             self.touched.clear();
-            self.crossed = None;
+            self.crossed = self.crossed_at(&mut tried, passed);
             self.refused = true;
         }
         tried.end();
         let found = passed.is_some();
         self.passed = passed.map(|passed| (passed.next.point, ONWARD * passed.way));
         found
+    }
+
+    /// The touch at a corner behind which the level is crossed, for the step from where the walk goes on.
+    fn crossed_at(&self, tried: &mut Tried<'_>, passed: &Passed) -> Option<Crossed> {
+        let Passed {
+            corner,
+            next,
+            extreme,
+            ..
+        } = passed;
+        let point = &corner.touch.located.point;
+        let behind = self.behind.as_ref()?;
+        let is_followed = extreme.is_clear() && extreme.bend == Bend::Corner;
+        is_followed.then(|| {
+            let touch = Seen {
+                point: point.clone(),
+                ..behind.clone()
+            };
+            let along = ArcLength::over(
+                &tried.newton,
+                Step {
+                    before: point,
+                    next: &next.point,
+                },
+            );
+            Crossed {
+                touch,
+                way: along.at(&next.point.u),
+                displaced: false,
+                jumps: true,
+            }
+        })
     }
 
     /// The search for the corner that an extreme leads to, on a way of some length.

@@ -3,15 +3,17 @@
 //! On the side that is clear the branch is smooth up to the touch, and is looked at as a step is. On the other one orbits are
 //! [looked for](super::beyond_corner) at their heights. What errors do not tell apart from the touch is one with it.
 
+use std::iter;
+
 use super::Engine;
 use super::corner::{Passed, Tried};
 use super::corner_search::{Beside, Corner};
 use super::grazing::{Bent, touching};
-use super::grazing_search::Reached;
+use super::grazing_search::{Reached, again};
 use super::seen::Seen;
 use crate::branches::extreme::{Bend, Extreme};
 use crate::branches::point::Event;
-use crate::branches::problem::{Change, Touch};
+use crate::branches::problem::{BranchProblem, Change, Touch};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::event::{EventKind, Turn};
 
@@ -39,7 +41,7 @@ impl Engine {
         let comes_clear = passed.extreme.is_clear();
         let mut turns = corner.turns();
         let mut first = known;
-        let way = self.way_to_corner(tried, before, passed);
+        let way = self.way_to_corner(tried, before, passed, after);
         self.events_along(tried, before, &way, after);
         let mut touching = Vec::new();
         tried
@@ -93,12 +95,14 @@ impl Engine {
         behind.filter(|seen| comes_clear && seen.point != corner.begin)
     }
 
-    /// Orbits on the way from the last point to a corner, and that where the branch ends there.
+    /// Orbits on the way from the last point to a corner, and that where the branch ends there. What they show in the step to the last point, which may be next
+    /// to the corner, is recorded.
     fn way_to_corner(
         &mut self,
         tried: &mut Tried<'_>,
         before: &CurvePoint,
         passed: &Passed,
+        after: usize,
     ) -> Vec<Seen> {
         let Passed {
             corner,
@@ -113,10 +117,38 @@ impl Engine {
             point: before.clone(),
             extreme: *extreme,
         };
+        let earlier = self.earlier_beyond(tried.problem, before, extreme);
+        let outers: Vec<Beside> = iter::once(outer).chain(earlier).collect();
         let search = self.search(tried, before, *extreme, *length);
-        let mut way = self.beyond_corner(search, corner, outer, true);
-        way.retain(|seen| seen.point != *before);
-        way
+        let mut way = self.beyond_corner(search, corner, &outers, true);
+        let last = way.iter().position(|seen| seen.point == *before);
+        let behind = way.split_off(last.map_or(0, |last| last + 1));
+        if way.len() > 2 {
+            self.record_pair(tried.problem, &mut tried.newton, &way, after - 1);
+        }
+        behind
+    }
+
+    /// The point before the last one, if it is farther beyond the level to which an extreme of that leads.
+    fn earlier_beyond(
+        &self,
+        problem: &mut dyn BranchProblem,
+        last: &CurvePoint,
+        extreme: &Extreme,
+    ) -> Option<Beside> {
+        let point = match &self.seen[..] {
+            [.., earlier, there] if there.point == *last => &earlier.point,
+            // It was followed in other unknowns.
+            _ => self.earlier.as_ref()?,
+        };
+        if point.u.len() != last.u.len() {
+            return None;
+        }
+        let there = again(problem, &point.u, extreme)?;
+        (there.above / extreme.above > 1.0).then(|| Beside {
+            point: point.clone(),
+            extreme: there,
+        })
     }
 
     /// Orbits on the way from where the branch begins behind a corner to the point where the walk goes on.
@@ -139,7 +171,7 @@ impl Engine {
             return vec![begin, next];
         }
         let search = self.search(tried, before, *extreme, *length);
-        self.beyond_corner(search, corner, next.clone(), false)
+        self.beyond_corner(search, corner, &[next.clone()], false)
     }
 
     /// What happens on the way from the last point along others, none of which is kept as a point.
@@ -168,7 +200,7 @@ impl Engine {
                 return;
             }
             let pair = [&pair[0], &pair[1]];
-            self.record_all(tried.problem, &mut tried.newton, pair, after, |_| true);
+            self.record_part(tried.problem, &mut tried.newton, pair, after);
         }
         if let Some(last) = way.last() {
             self.falls = last.falls;

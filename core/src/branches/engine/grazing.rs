@@ -151,9 +151,9 @@ impl Engine {
         self.touched = search.found;
         self.bent.append(&mut search.bent);
         let orbits = search.orbits;
-        if let (Some(crossed), [.., a, b]) = (behind, &self.seen[..]) {
+        if let (Some(crossed), [earlier @ .., a, b]) = (behind, &self.seen[..]) {
             let ends = [a.clone(), b.clone()];
-            let inner = self.farther_behind(problem, newton, &crossed, [a, b]);
+            let inner = self.farther_behind(problem, newton, &crossed, earlier.last(), [a, b]);
             self.record_between(problem, newton, ends, inner, after);
             if self.ended.is_some() {
                 return;
@@ -252,8 +252,15 @@ impl Engine {
                     touch,
                     way: 0.0,
                     displaced: false,
+                    jumps: false,
                 };
-                earlier.extend(self.farther_behind(problem, newton, &crossed, [&ends[0], other]));
+                earlier.extend(self.farther_behind(
+                    problem,
+                    newton,
+                    &crossed,
+                    None,
+                    [&ends[0], other],
+                ));
             }
             // Behind another step it is not known how far the last point is from it.
             if place == 1 && crosses(1) && along.at(&touch.point.u) / whole > farthest {
@@ -263,6 +270,7 @@ impl Engine {
                     touch: touch.clone(),
                     way: way.at(&ends[1].point.u),
                     displaced: false,
+                    jumps: false,
                 });
             }
             if let Some(end) = crossed.filter(|_| inside) {

@@ -35,6 +35,8 @@ const CLOSER: f64 = 0.03;
 const EXACT: f64 = 1e-12;
 /// Orbits on the way, at most.
 const ORBITS: usize = 16;
+/// Where an extreme jumps by less than this part of what it rises by from either end of a step, it goes through its level there.
+const SMALL: f64 = 1e-3;
 
 /// An extreme at other unknowns.
 pub(super) fn again(
@@ -90,9 +92,12 @@ fn on_the_way_to(
         Aim::Beside(aim)
     };
     let root = root(problem, newton, step, options, aim, above)?;
-    let left = root.located.test.abs();
+    let Located { test, jump, .. } = root.located;
     let rate = ((to - from) / (next.above - before.above)).abs();
-    (left <= TOUCHES).then_some(Reached {
+    // Of orbits that are known less well extremes may jump as little, where equations with more nodes have no jump.
+    let jumps_little = jump > 0.0 && jump <= SMALL * before.above.abs().min(next.above.abs());
+    let left = if jumps_little { jump } else { test.abs() };
+    (left <= TOUCHES || jumps_little).then_some(Reached {
         located: root.located,
         extreme,
         error: root.error + ROUNDED * left * rate,

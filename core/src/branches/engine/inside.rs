@@ -91,6 +91,31 @@ impl Engine {
         parts
     }
 
+    /// Records what the first of these points show in the step between the first two that both of its ends do not: that step is behind so many points, and it
+    /// was looked at before the third one was known.
+    pub(super) fn record_before(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        points: [&Seen; 3],
+        after: usize,
+    ) {
+        let mut looks = Vec::new();
+        for sought in sought_from(problem, points[1]) {
+            let found = self.dip(problem, newton, points, &mut looks, sought);
+            let Some(Dip::Before(found)) = found else {
+                continue;
+            };
+            if !sought.is_among(&self.divided, after) {
+                let parts = [points[0].clone(), found, points[1].clone()];
+                self.record_pair(problem, newton, &parts, after);
+            }
+            if self.ended.is_some() {
+                return;
+            }
+        }
+    }
+
     /// Divides the first step behind a point that has other unknowns, as far as slopes and multipliers tell: what else there is to compare is of
     /// the equations.
     fn divide_behind(

@@ -484,21 +484,31 @@ impl Engine {
         let known = problem.record().events.len();
         let mut turned = None;
         for pair in parts.windows(2) {
-            let wanted = |_: &Change| true;
-            let pair = [&pair[0], &pair[1]];
-            let known = problem.record();
-            let (located, turns) = (known.events.len(), known.turns.len());
-            let turn = self.record_all(problem, newton, pair, after, wanted);
+            let turn = self.record_part(problem, newton, [&pair[0], &pair[1]], after);
             turned = turned.or(turn);
-            if self.ended.is_none() {
-                self.record_hidden(problem, newton, pair, [located, turns, after]);
-            }
             if self.ended.is_some() {
                 return turned;
             }
         }
         if self.doubted {
             problem.record_mut().doubt_unknown(known);
+        }
+        turned
+    }
+
+    /// Records what changes its sign between two points, and what events hide that were located there. Says where the branch turned without a fold.
+    fn record_part(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        pair: [&Seen; 2],
+        after: usize,
+    ) -> Option<Turn> {
+        let known = problem.record();
+        let (located, turns) = (known.events.len(), known.turns.len());
+        let turned = self.record_all(problem, newton, pair, after, |_| true);
+        if self.ended.is_none() {
+            self.record_hidden(problem, newton, pair, [located, turns, after]);
         }
         turned
     }

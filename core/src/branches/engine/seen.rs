@@ -32,6 +32,9 @@ pub(super) struct Crossed {
     /// Its place is not known in the present unknowns, and it has those of the last point.
     #[cfg_attr(feature = "serde", serde(default))]
     pub(super) displaced: bool,
+    /// The force jumps there: determinants come from infinity behind it.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(super) jumps: bool,
 }
 
 impl Crossed {

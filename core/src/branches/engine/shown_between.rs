@@ -69,7 +69,17 @@ impl Engine {
         let before = usize::from(earlier.is_some());
         parts.splice(0..0, earlier);
         self.divide_parts(problem, newton, &mut parts, before);
-        self.record_pair(problem, newton, &parts[before..], after);
+        if before > 0 {
+            self.record_before(
+                problem,
+                newton,
+                [&parts[0], &parts[1], &parts[2]],
+                after - 1,
+            );
+        }
+        if self.ended.is_none() {
+            self.record_pair(problem, newton, &parts[before..], after);
+        }
     }
 
     /// Adds the orbits in the middle of long parts of a step in which something happens: no second difference is a bound across that.

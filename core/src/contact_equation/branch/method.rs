@@ -292,13 +292,22 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         self.next.is_some()
     }
 
-    /// Whether the equations that were prepared have a place for the last orbit that was kept, where the present ones have one.
+    /// Whether the equations that were prepared have a place for the last orbit that was kept, where the present ones have one. Panels that end at the kinks of
+    /// another orbit may step over its own, and are to tell the same of its multipliers.
     fn holds_last(&mut self) -> bool {
-        let Some(next) = self.next.as_ref().filter(|_| !self.kept.is_empty()) else {
+        let Some(next) = self.next.as_mut().filter(|_| !self.kept.is_empty()) else {
             return true;
         };
-        let placed = self.run.transferred(&self.kept, &next.equations, &next.u);
-        placed.is_some()
+        if next.same == Same::Orbit {
+            let placed = self.run.transferred(&self.kept, &next.equations, &next.u);
+            return placed.is_some();
+        }
+        let there = self.run.equations.rearranged(&next.equations, &self.kept);
+        let Some(last) = self.last.as_ref().filter(|last| !last.map.is_empty()) else {
+            return true;
+        };
+        let map = next.equations.map(&there);
+        map.is_none_or(|map| Tests::of(Some(&map), last.slope).tell_as(&last.tests()))
     }
 
     /// Whether the step to an orbit is to be made again, shorter, since the equations that were prepared there have no place for the orbit before
@@ -356,6 +365,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let tried = self.refused >= RELOCATED;
         let moved = fails && again && !tried && self.run.has_moved_kinks();
         if moved && self.prepare_at_kinks(&at.u) {
+            if self.is_displaced() {
+                return Read::TooFar;
+            }
             self.refused += 1;
             return Read::Refused;
         }
