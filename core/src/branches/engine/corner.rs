@@ -308,10 +308,8 @@ impl Engine {
                 },
             );
             Crossed {
-                touch,
-                way: along.at(&next.point.u),
-                displaced: false,
                 jumps: true,
+                ..Crossed::at(touch, along.at(&next.point.u))
             }
         })
     }

@@ -248,12 +248,7 @@ impl Engine {
             let other = before.checked_sub(1).map(|place| &self.seen[place]);
             if let Some(other) = other.filter(|_| crosses(0)) {
                 let touch = touch.clone();
-                let crossed = Crossed {
-                    touch,
-                    way: 0.0,
-                    displaced: false,
-                    jumps: false,
-                };
+                let crossed = Crossed::at(touch, 0.0);
                 earlier.extend(self.farther_behind(
                     problem,
                     newton,
@@ -266,12 +261,7 @@ impl Engine {
             if place == 1 && crosses(1) && along.at(&touch.point.u) / whole > farthest {
                 farthest = along.at(&touch.point.u) / whole;
                 let way = ArcLength::over(newton, step_between([&touch, &ends[1]]));
-                self.crossed = Some(Crossed {
-                    touch: touch.clone(),
-                    way: way.at(&ends[1].point.u),
-                    displaced: false,
-                    jumps: false,
-                });
+                self.crossed = Some(Crossed::at(touch.clone(), way.at(&ends[1].point.u)));
             }
             if let Some(end) = crossed.filter(|_| inside) {
                 let end = Seen::at(problem, &end, ends[0].falls);
@@ -527,8 +517,14 @@ impl TouchSearch<'_> {
             farthest,
         };
         let options = self.options;
-        let located = approach.close_in(problem, newton, options);
-        let located = located.or_else(|| on_the_way(problem, newton, step, found[0], options));
+        let same = SAME * self.range;
+        let is_known = |value: f64| self.found.iter().any(|other| (other - value).abs() <= same);
+        let near = approach.close_in(problem, newton, options);
+        let located = match near {
+            Some(near) if !is_known(near.located.point.parameter()) => Some(near),
+            // Of an extreme that goes through its level twice, what leads to one of both places leads back to the other.
+            known => on_the_way(problem, newton, step, found[0], options).or(known),
+        };
         let Some(Reached {
             located,
             extreme,
@@ -548,8 +544,7 @@ impl TouchSearch<'_> {
         };
         at_once.extend(found[1..].iter().filter(touches));
         let value = located.point.parameter();
-        let known = |other: &f64| (other - value).abs() <= SAME * self.range;
-        if self.found.iter().any(known) {
+        if is_known(value) {
             return true;
         }
         self.found.push(value);

@@ -38,6 +38,16 @@ pub(super) struct Crossed {
 }
 
 impl Crossed {
+    /// A touch so far before the last point, at which no force jumps.
+    pub(super) fn at(touch: Seen, way: f64) -> Self {
+        Self {
+            touch,
+            way,
+            displaced: false,
+            jumps: false,
+        }
+    }
+
     /// After a change of unknowns: its multipliers are known still, and how far the last point is behind it.
     pub(super) fn displaced_to(mut self, last: &CurvePoint) -> Self {
         self.touch.point = last.clone();

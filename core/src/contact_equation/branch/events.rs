@@ -97,11 +97,18 @@ pub(in crate::contact_equation) fn event(
         located_again(run, at, test, again)
     };
     let Some(mut again) = again else {
-        event.error = if let (true, Some(map)) = (crosses, &read.finer) {
+        let finer = read.finer.as_ref().map(|map| {
             let there = Tests::of(Some(map), at.parameter_slope()).value(test);
-            event.error + SAFETY * there.abs() / zero.steepness
-        } else {
-            f64::INFINITY
+            there.abs() / zero.steepness
+        });
+        let [from, to] = step.parameters();
+        // Of equations with more nodes it is none, if they do not lead to one within the step.
+        if !crosses && finer.is_some_and(|moved| moved > (to - from).abs()) {
+            return None;
+        }
+        event.error = match finer {
+            Some(moved) if crosses => event.error + SAFETY * moved,
+            _ => f64::INFINITY,
         };
         event.tangent = event_tangent::of_states(&mut run.equations, at, periods);
         return Some(event);
