@@ -157,3 +157,44 @@ fn many_impacts_in_a_slow_period() {
         }
     }
 }
+
+hertzian::oscillator! {
+    /// Friction that drives, of full size from a rate of 1e-6 on.
+    Driving(x) {
+        param m = 0.017992496567387047 > 0;
+        param c = 0.6630265812346576 > 0;
+        param k = 7358.942140920422 > 0;
+        param f = -0.006274728731116827;
+        param v = 8.420281407601276e-7 > 0;
+        param drive = 0.0038775922836808284 > 0;
+        law friction(gap) { f*tanh(dot(gap)/v) }
+        m*ddot(x) + c*dot(x) + k*x + friction(x + 3.7128288048460213e-6) = drive*cos(omega*t);
+    }
+}
+
+#[test]
+fn driving() {
+    let system = Driving::default();
+    let range = [414.32534092037247, 458.5184401919087];
+    for [from, to] in [range, [range[1], range[0]]] {
+        let request = FrequencyResponse::of(&system).from(from).to(to);
+        for (name, found) in [
+            ("balance", request.clone().by(HarmonicBalance::new()).run()),
+            ("shooting", request.clone().by(Shooting::new()).run()),
+            (
+                "contact",
+                request.clone().by(hertzian::ContactEquation::new()).run(),
+            ),
+        ] {
+            match found {
+                Ok(branch) => println!(
+                    "{from} {name}: {:?} {:?} {:?}",
+                    branch.points.len(),
+                    branch.stopped,
+                    branch.points[0].peak_to_peak()
+                ),
+                Err(error) => println!("{from} {name}: {error}"),
+            }
+        }
+    }
+}
