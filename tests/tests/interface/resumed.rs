@@ -146,8 +146,8 @@ fn by_the_contact_equation() {
 hertzian::oscillator! {
     /// A spring of two stiffnesses.
     Bilinear(x) {
-        law spring(gap) { gap > 0 => 9*gap, else => gap }
-        ddot(x) + 0.08*dot(x) + spring(x) = 0.5005*cos(omega*t) + 0.4;
+        law spring(gap) { gap > 0 => 25.5*gap, else => gap }
+        ddot(x) + 0.1*dot(x) + spring(x) = 0.324*cos(omega*t) + 0.4;
     }
 }
 
@@ -173,36 +173,33 @@ fn says<M: OrbitMethod>(request: &FrequencyResponse<M>, name: &str, what: &str) 
     found
 }
 
-/// At 0.58918 a level is touched, and the contact equation goes over to other unknowns behind it before two doublings: the touch is known by its multipliers
-/// alone.
+/// At 2.4858 a level is touched, and behind that the contact equation goes over to other unknowns, in which the touch has no place: it is known by its
+/// multipliers alone.
 #[test]
 fn behind_a_touch_and_other_unknowns() {
     let model = Bilinear {};
     let request = FrequencyResponse::of(&model).by(ContactEquation::new());
-    let request = request.from(0.68).to(0.58);
+    let request = request.from(2.5).to(2.3);
     assert!(says(&request, "displaced", "\"displaced\":true"));
     resumes(&request, &model, "displaced", 1);
-    let doublings = request.run().expect("a branch");
-    let doublings = doublings.events(hertzian::EventKind::PeriodDoubling);
-    assert_eq!(doublings.count(), 4);
 }
 
-/// The branch has a corner where the stop is touched, at 0.83012, and two doublings behind it: from points on either side, and from one behind which a corner
-/// was looked for.
+/// The branch has a corner where the stop is touched, at 0.83012, and doublings at 0.8422 and 0.8564 behind it: from points on either side of all of them.
 #[test]
 fn around_a_corner() {
     let model = Preloads {};
     let request = FrequencyResponse::of(&model);
     let doublings = |branch: &Branch| {
         let found = branch.events(hertzian::EventKind::PeriodDoubling);
-        let found = found.filter(|event| event.point.value < 0.87);
-        found.count()
+        let values = found.map(|event| event.point.value);
+        values.filter(|value| (0.83..0.86).contains(value)).count()
     };
     for [from, to] in [[0.7, 0.95], [0.95, 0.7]] {
         let request = request.clone().from(from).to(to);
         let moved = request.clone().by(Shooting::new());
         let solved = request.by(ContactEquation::new());
-        assert!(says(&moved, "corner", "\"looked\":{"));
+        let corner = "\"bend\":\"corner\"";
+        assert!(says(&moved, "corner", corner) && says(&solved, "corner", corner));
         resumes(&moved, &model, "corner", 1);
         resumes(&solved, &model, "corner", 1);
         let found = [moved.run(), solved.run()].map(|found| doublings(&found.expect("a branch")));

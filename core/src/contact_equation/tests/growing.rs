@@ -1,5 +1,7 @@
 //! Extremes of gaps in motions that grow beyond all bounds, as those of equations that are not solved may: they are found, or not, by a search that ends.
 
+use std::f64::consts::PI;
+
 use super::first;
 use crate::contact_equation::orbit::motion::Motion;
 
@@ -13,29 +15,43 @@ crate::oscillator! {
     }
 }
 
+const OMEGA: f64 = 1.1;
+
 /// Phases of the extremes of the gap at this damping, in the motion that begins as one at a damping of 0.2 does.
 fn extremes(damping: f64) -> Vec<f64> {
     let system = Ringing { damping: 0.2 };
-    let (mut equations, mut u) = first(&system, Some("damping"), 1.1, [16, 1]);
+    let (mut equations, mut u) = first(&system, Some("damping"), OMEGA, [16, 1]);
     let last = u.len() - 1;
     assert_eq!(u[last], 0.2);
     u[last] = damping;
     equations.compute(&u, false);
     let found = &Motion::of(&equations).gap_extremes()[0];
-    println!("{damping}: failed {}, {}", equations.failed, found.len());
     found.iter().map(|extreme| extreme.phase).collect()
 }
 
-/// From half of the period on the fast mode is all that there is: a gap with the exponents `a +- i b` has an extreme every `pi / b`.
+/// Once the fast mode is all that there is, a gap with the exponents `a +- i b` has an extreme every `pi / b`. The stop changes `b` by less than a thousandth.
 #[test]
-fn extremes_of_a_mode_that_rings_up_are_half_a_period_apart() {
-    let phases = extremes(-20.0);
-    println!("{phases:?}");
+fn extremes_of_a_mode_that_rings_up_are_half_of_its_period_apart() {
+    for damping in [-20.0, -100.0, -200.0_f64] {
+        let phases = extremes(damping);
+        let apart = PI * OMEGA / (1e6 - 0.25 * damping * damping).sqrt();
+        let late: Vec<f64> = phases
+            .into_iter()
+            .filter(|phase| (6.0..9.0).contains(phase))
+            .collect();
+        let expected = 3.0 / apart;
+        assert!((late.len() as f64 - expected).abs() < 2.0, "{}", late.len());
+        for pair in late.windows(2) {
+            let part = (pair[1] - pair[0]) / apart;
+            assert!((part - 1.0).abs() < 2e-3, "{damping}: {pair:?} {part}");
+        }
+    }
 }
 
+/// Values and rates leave the range of numbers, and their bounds before them.
 #[test]
 fn a_motion_beyond_all_bounds_is_searched_to_an_end() {
-    for damping in [-100.0, -200.0, -250.0, -400.0, -1000.0] {
+    for damping in [-250.0, -400.0, -1000.0] {
         let phases = extremes(damping);
         assert!(phases.iter().all(|phase| phase.is_finite()));
     }

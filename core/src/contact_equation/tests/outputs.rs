@@ -190,7 +190,7 @@ fn outputs_partly_by_rules_are_those_of_shooting() {
     for lean in [0.0, 0.05] {
         let system = Mixed { lean };
         let request = FrequencyResponse::of(&system).tolerance(1e-11);
-        let exact = request.clone().by(Shooting::new()).tolerance(1e-13);
+        let exact = request.clone().by(Shooting::new()).tolerance(1e-12);
         let exact = exact.orbit(1.1).unwrap();
         let request = request.by(ContactEquation::new());
         let own = request.near_orbit(&exact.orbit).orbit(1.1).unwrap();
