@@ -34,6 +34,17 @@ crate::oscillator! {
     }
 }
 
+crate::oscillator! {
+    /// A mass before a ball, beside a mode that is a thousand times as fast.
+    Aside(x, y) {
+        law ball(g) { g > 0 => 40*g^1.5, else => 0 }
+        ddot(x) + 0.05*dot(x) + x + ball(x + 0.1*y - 0.05) = 0.2*cos(omega*t);
+        ddot(y) + 100*dot(y) + 1_000_000*y + 0.1*ball(x + 0.1*y - 0.05) = 0;
+        output squeezed = x + 0.1*y;
+        output force = force(ball);
+    }
+}
+
 fn steps_are_near(system: &dyn System, omega: f64, state: [f64; 4]) {
     let shared = system.shared();
     let cancel = Cancel::new();
@@ -83,8 +94,8 @@ fn orbits_at_folds_are_those_of_the_branch() {
 /// What is read of an orbit that was solved for again is what shooting reads of it, without an integration; and it is what a branch completes its orbits by.
 #[test]
 fn stiff_orbits_are_solved_for_again() {
-    let request = FrequencyResponse::of(&Stiff {}).by(ContactEquation::new());
-    let request = request.from(0.9).to(1.1).tolerance(1e-8);
+    let request = FrequencyResponse::of(&Aside {}).by(ContactEquation::new());
+    let request = request.from(0.9).to(1.1).tolerance(1e-6);
     let branch = request.run().unwrap();
     let shooting = Shooting::new();
     let apart = |a: &Motion, b: &Motion| {
@@ -98,10 +109,10 @@ fn stiff_orbits_are_solved_for_again() {
     for point in branch.points.iter().step_by(7) {
         let asked = Asked::of(&request.request, &shooting).held();
         let asked = asked.problem(point.value, point.value).unwrap();
-        let problem = ContactProblem::new(asked, 1e-8);
+        let problem = ContactProblem::new(asked, 1e-6);
         let completed = Solved::of(&problem, point).unwrap().complete(point);
         assert_eq!(branch.complete(point).unwrap(), completed);
-        let exact = FrequencyResponse::of(&Stiff {}).by(Shooting::new());
+        let exact = FrequencyResponse::of(&Aside {}).by(Shooting::new());
         let exact = exact.tolerance(1e-12).near_orbit(&point.orbit);
         let exact = exact.orbit(point.value).unwrap();
         let [own, exact] = [&completed, &exact].map(|point| &point.observed);
