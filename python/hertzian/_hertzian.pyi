@@ -232,6 +232,35 @@ class Model:
         tolerance: float | None = 1e-10,
         progress: _Watch | None = None,
     ) -> Swept: ...
+    def free_oscillation(
+        self,
+        from_: float | None = None,
+        to: float | None = None,
+        *,
+        mode: int | None = None,
+        up_to: Branch | None = None,
+        along: str | None = None,
+        near_rest: tuple[ArrayLike, float] | None = None,
+        conservative: bool | None = False,
+        tolerance: float | None = 1e-12,
+        largest_step: float | None = 0.1,
+        max_points: int | None = 5000,
+        progress: _Watch | None = None,
+    ) -> Branch: ...
+    def modes(self, *, conservative: bool = False) -> _Floats: ...
+    def energies(self, curve: Branch, *, conservative: bool = False) -> _Floats: ...
+    def phase_resonance(
+        self,
+        vary: str,
+        to: float,
+        *,
+        between: tuple[float, float] | None = None,
+        on: Branch | None = None,
+        harmonics: int | None = 20,
+        largest_step: float | None = 0.1,
+        max_points: int | None = 5000,
+        progress: _Watch | None = None,
+    ) -> Branch: ...
     def history(
         self,
         state: ArrayLike | None = None,
@@ -320,6 +349,8 @@ class Branch:
     def turns(self) -> list[Turn]: ...
     @property
     def winding(self) -> Winding | None: ...
+    @property
+    def leaps(self) -> list[Leap]: ...
     @property
     def begin(self) -> Stop | None: ...
     @property
@@ -587,6 +618,13 @@ class Winding:
     @property
     def within(self) -> tuple[float, float]: ...
     def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class Leap:
+    @property
+    def after(self) -> int: ...
+    @property
+    def reason(self) -> Stop: ...
 
 @final
 class Stop:

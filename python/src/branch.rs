@@ -22,7 +22,7 @@ use crate::look::{Look, view};
 use crate::model::PyModel;
 use crate::point::{PyPoint, wanted};
 use crate::reading::PyReading;
-use crate::stop::{PyStop, object, value};
+use crate::stop::{PyLeap, PyStop, object, value};
 
 /// A branch of periodic orbits, in the order in which it was followed. A notebook shows its chart.
 ///
@@ -175,6 +175,12 @@ impl PyBranch {
     #[getter]
     fn turns(&self) -> Vec<PyTurn> {
         self.held().turns.iter().copied().map(PyTurn).collect()
+    }
+
+    /// Where parts of it are missing, as those of free oscillation in resonance with another mode: list of `Leap`.
+    #[getter]
+    fn leaps(&self) -> Vec<PyLeap> {
+        self.held().leaps.iter().copied().map(PyLeap).collect()
     }
 
     /// Where it winds, if it does: a narrow part of its range with dozens of folds: `Winding` or None.

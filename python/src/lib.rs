@@ -5,6 +5,7 @@
 
 mod arrays;
 mod attractors;
+mod backbone;
 mod branch;
 mod compute;
 mod curve;
@@ -55,6 +56,7 @@ fn _hertzian(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<event::PyTurn>()?;
     module.add_class::<event::PyWinding>()?;
     module.add_class::<stop::PyStop>()?;
+    module.add_class::<stop::PyLeap>()?;
     module.add_class::<curve::PyBifurcationCurve>()?;
     module.add_class::<curve::PySpecial>()?;
     module.add_class::<diagram::PyDiagram>()?;

@@ -21,7 +21,7 @@ use crate::methods::PySettling;
 use crate::point::PyPoint;
 use crate::request::{Method, Request, by_any};
 use crate::solutions::PySolutions;
-use crate::{attractors, sweep};
+use crate::{attractors, backbone, sweep};
 
 /// A model declared by text, in the language of the macro ``oscillator!``, with values of its parameters by name.
 ///
@@ -445,6 +445,72 @@ impl PyModel {
     ) -> PyResult<Bound<'py, PyAny>> {
         let (given, system, watch) = self.asked_of_motions(py, "sweep", options)?;
         sweep::sweep(py, [from_, to], &system, watch, given)
+    }
+
+    /// The frequency of free oscillation over its amplitude: `Branch` over the frequency, of orbits that begin at rest.
+    ///
+    /// ``from_``, ``to``: positions at rest of the coordinate that is varied, where the curve begins and ends. ``mode``: the mode that it
+    /// begins with, counted from one in the order of `modes`; then ``from_`` is by default a fiftieth of the displacement at the end, and
+    /// ``up_to``, a `Branch` of the same coordinates, may say in place of ``to`` how far it moves. ``along``: the coordinate that is varied,
+    /// by default the first one, of a mode that which moves most. ``near_rest``: positions at rest and the frequency of an oscillation that
+    /// the first one is near, as ``([1.0, 0.5], 1.2)``. ``conservative``: whether damping, loads that change with time and what forces do by
+    /// rates are left out; else there must be none. ``tolerance``: of the flow, where it is not in closed form. ``progress``: as of `response`.
+    ///
+    /// `Branch.leaps` says where parts of the curve are missing. Nothing is known of stability.
+    #[pyo3(
+        signature = (from_=None, to=None, **options),
+        text_signature = "($self, from_=None, to=None, *, mode=None, up_to=None, along=None, near_rest=None, conservative=False, tolerance=1e-12, largest_step=0.1, max_points=5000, progress=None)"
+    )]
+    fn free_oscillation<'py>(
+        &self,
+        py: Python<'py>,
+        from_: Option<f64>,
+        to: Option<f64>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (given, system, watch) = self.asked_of_motions(py, "free_oscillation", options)?;
+        backbone::free_oscillation(py, [from_, to], &system, watch, given)
+    }
+
+    /// Angular frequencies of small free oscillations about the state at rest, the lowest first; zero of what nothing holds: array of shape
+    /// (coordinates,). ``conservative``: as of `free_oscillation`.
+    #[pyo3(signature = (*, conservative=false))]
+    fn modes<'py>(&self, py: Python<'py>, conservative: bool) -> PyResult<Bound<'py, PyAny>> {
+        let (_, system, watch) = self.asked_of_motions(py, "modes", None)?;
+        backbone::modes(py, &system, watch, conservative)
+    }
+
+    /// Energies of the orbits of a curve of `free_oscillation` above that of the state at rest: array of shape (points,).
+    /// ``conservative``: as there.
+    #[pyo3(signature = (curve, *, conservative=false))]
+    fn energies<'py>(
+        &self,
+        py: Python<'py>,
+        curve: PyRef<'py, PyBranch>,
+        conservative: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (_, system, watch) = self.asked_of_motions(py, "energies", None)?;
+        backbone::energies(py, &curve, &system, watch, conservative)
+    }
+
+    /// Where the model is in phase resonance with its load, from the value that the parameter ``vary`` has to the value ``to``: `Branch`
+    /// over that parameter, along which the frequency follows the resonance.
+    ///
+    /// ``between``: two frequencies, between which the response is searched for the first orbit; or ``on``: a `Branch` of the response, on
+    /// which it is. ``harmonics``: so many. ``progress``: as of `response`. Nothing is known of stability.
+    #[pyo3(
+        signature = (vary, to, **options),
+        text_signature = "($self, vary, to, *, between=None, on=None, harmonics=20, largest_step=0.1, max_points=5000, progress=None)"
+    )]
+    fn phase_resonance<'py>(
+        &self,
+        py: Python<'py>,
+        vary: String,
+        to: f64,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (given, system, watch) = self.asked_of_motions(py, "phase_resonance", options)?;
+        backbone::phase_resonance(py, vary, to, &system, watch, given)
     }
 
     /// The motion from a state, at equal distances of time: two arrays, the times of shape (periods*samples + 1,), and the states, all

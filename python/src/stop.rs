@@ -1,6 +1,6 @@
-//! Variants with numbers: their name, their numbers by names, and their sentence.
+//! Why branches end, and why parts of them are missing; variants with numbers: their name, their numbers by names, and their sentence.
 
-use hertzian::Stop;
+use hertzian::{Leap, Stop};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -34,6 +34,34 @@ impl PyStop {
 
     fn __repr__(&self) -> String {
         format!("<Stop: {}>", self.0)
+    }
+}
+
+/// A part of a branch that is missing.
+#[pyclass(frozen, name = "Leap", module = "hertzian", eq)]
+#[derive(PartialEq)]
+pub struct PyLeap(pub Leap);
+
+#[pymethods]
+impl PyLeap {
+    /// Number of points of the branch before it: int.
+    #[getter]
+    fn after(&self) -> usize {
+        self.0.after
+    }
+
+    /// Why it was not followed on from there: `Stop`.
+    #[getter]
+    fn reason(&self) -> PyStop {
+        PyStop(self.0.reason)
+    }
+
+    fn __str__(&self) -> String {
+        self.0.to_string()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Leap: {}>", self.0)
     }
 }
 

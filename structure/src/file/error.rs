@@ -64,6 +64,14 @@ pub enum FileError {
         /// What is wrong, with its line.
         source: MarketError,
     },
+    /// A file of MATLAB.
+    #[error("{}: files of MATLAB are not read: what `scipy.io.loadmat` reads of it is written as it is taken here by {instead}", .path.display())]
+    Matlab {
+        /// Its path.
+        path: PathBuf,
+        /// What writes a file that is read.
+        instead: &'static str,
+    },
     /// An array of numpy is at fault.
     #[error("{}: {source}", .path.display())]
     Npy {

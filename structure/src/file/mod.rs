@@ -59,7 +59,7 @@ mod parse;
 mod text;
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 pub use error::{FileError, FileFault};
@@ -139,20 +139,33 @@ impl Files {
             return SparseMatrix::from_triplets(shape.0, shape.1, entries)
                 .map_err(|source| FileError::Matrix { path, source });
         }
-        let file = open(&path)?;
-        market::read(BufReader::new(file)).map_err(|source| FileError::Market { path, source })
+        let reader = begun(&path, b'%', "`scipy.io.mmwrite`")?;
+        market::read(reader).map_err(|source| FileError::Market { path, source })
     }
 
     fn array(&self, name: &str) -> Result<npy::Array, FileError> {
         let path = self.folder.join(name);
-        let file = open(&path)?;
-        npy::read(BufReader::new(file)).map_err(|source| FileError::Npy { path, source })
+        let reader = begun(&path, 0x93, "`numpy.save`")?;
+        npy::read(reader).map_err(|source| FileError::Npy { path, source })
     }
 }
 
-fn open(path: &Path) -> Result<File, FileError> {
-    File::open(path).map_err(|source| FileError::Read {
+/// A file that begins with a byte, unless it is one of MATLAB: then what else writes what is in it.
+fn begun(path: &Path, with: u8, instead: &'static str) -> Result<BufReader<File>, FileError> {
+    let unreadable = |source| FileError::Read {
         path: path.to_owned(),
         source,
-    })
+    };
+    let mut reader = BufReader::new(File::open(path).map_err(unreadable)?);
+    let begin = reader.fill_buf().map_err(unreadable)?;
+    // Files of version 4 do not say so.
+    let end = path.extension();
+    let is_named = end.is_some_and(|end| end.eq_ignore_ascii_case("mat"));
+    if begin.starts_with(b"MATLAB ") || is_named && begin.first() != Some(&with) {
+        return Err(FileError::Matlab {
+            path: path.to_owned(),
+            instead,
+        });
+    }
+    Ok(reader)
 }

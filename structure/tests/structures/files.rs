@@ -239,6 +239,40 @@ fn directions_may_be_arrays() {
     assert!(error.to_string().contains("after 1 of 2 numbers"));
 }
 
+/// By its first words, which MATLAB and scipy write, or by the end of its name, as one of version 4 has no such words.
+#[test]
+fn files_of_matlab_are_refused_with_what_to_do() {
+    let folder = Folder::new("matlab");
+    two(&folder);
+    let said = |name: &str, bytes: &[u8], from: &str, to: &str| {
+        let path = folder.write(name, bytes);
+        let text = TWO.replacen(from, &to.replace("FILE", name), 1);
+        let error = file::read(folder.write("two.toml", text)).unwrap_err();
+        let said = error.to_string();
+        let place = path.display().to_string();
+        assert!(said.starts_with(&place), "{said}");
+        said[place.len()..].to_owned()
+    };
+    let by_matlab = b"MATLAB 5.0 MAT-file, Platform: GLNXA64, Created on: Mon Jan  5 10:00:00 2026";
+    let by_scipy = b"MATLAB 5.0 MAT-file Platform: posix, Created on: Mon Jan  5 10:00:00 2026";
+    let files: [(&str, &[u8]); 4] = [
+        ("K.mat", by_matlab),
+        ("K.dat", by_scipy),
+        ("K.MAT", b"\0\0\0\0\x01\0\0\0"),
+        ("empty.mat", b""),
+    ];
+    let matrix = ": files of MATLAB are not read: what `scipy.io.loadmat` reads of it is written as it is taken here by `scipy.io.mmwrite`";
+    let array = matrix.replace("scipy.io.mmwrite", "numpy.save");
+    for (name, bytes) in files {
+        assert_eq!(said(name, bytes, "stiffness.mtx", "FILE"), matrix);
+        let direction = "{ coordinates = [0], weights = [1e0] }";
+        assert_eq!(said(name, bytes, direction, "{ file = \"FILE\" }"), array);
+    }
+    folder.write("K.mat", STIFFNESS);
+    let text = TWO.replace("stiffness.mtx", "K.mat");
+    assert!(file::read(folder.write("two.toml", text)).is_ok());
+}
+
 /// What stands in place of a part of a text: characters of the format, and numbers that are too large.
 fn put() -> impl Strategy<Value = String> {
     let parts = prop::sample::select(vec![
@@ -266,6 +300,8 @@ fn put() -> impl Strategy<Value = String> {
         "-drive",
         "../",
         ".npy",
+        ".mat",
+        "MATLAB ",
     ]);
     prop::collection::vec(parts, 0..3).prop_map(|parts| parts.concat())
 }

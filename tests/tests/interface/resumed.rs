@@ -143,6 +143,70 @@ fn by_the_contact_equation() {
     resumes(&request.from(0.6).to(1.2), &ONE, "curved", 9);
 }
 
+hertzian::oscillator! {
+    /// A spring of two stiffnesses.
+    Bilinear(x) {
+        law spring(gap) { gap > 0 => 25.5*gap, else => gap }
+        ddot(x) + 0.1*dot(x) + spring(x) = 0.324*cos(omega*t) + 0.4;
+    }
+}
+
+hertzian::oscillator! {
+    /// Between two stops whose forces begin with a jump.
+    Preloads(x) {
+        law stop(gap) { gap >= 0 => 0.164 + 4*gap, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x - 1) - stop(-x - 1.2) = 0.6031*cos(omega*t);
+    }
+}
+
+/// Whether what is left of a branch that is stopped at one of its points says something.
+fn says<M: OrbitMethod>(request: &FrequencyResponse<M>, name: &str, what: &str) -> bool {
+    let file = format!("hertzian-resumed-{name}-{}.json", std::process::id());
+    let path = std::env::temp_dir().join(file);
+    let count = request.run().expect("a branch").points.len();
+    let found = (2..count).any(|points| {
+        part_of(request, points).write(&path).expect("written");
+        let text = std::fs::read_to_string(&path).expect("a file");
+        text.contains(what)
+    });
+    std::fs::remove_file(path).expect("removed");
+    found
+}
+
+/// At 2.4858 a level is touched, and behind that the contact equation goes over to other unknowns, in which the touch has no place: it is known by its
+/// multipliers alone.
+#[test]
+fn behind_a_touch_and_other_unknowns() {
+    let model = Bilinear {};
+    let request = FrequencyResponse::of(&model).by(ContactEquation::new());
+    let request = request.from(2.5).to(2.3);
+    assert!(says(&request, "displaced", "\"displaced\":true"));
+    resumes(&request, &model, "displaced", 1);
+}
+
+/// The branch has a corner where the stop is touched, at 0.83012, and doublings at 0.8422 and 0.8564 behind it: from points on either side of all of them.
+#[test]
+fn around_a_corner() {
+    let model = Preloads {};
+    let request = FrequencyResponse::of(&model);
+    let doublings = |branch: &Branch| {
+        let found = branch.events(hertzian::EventKind::PeriodDoubling);
+        let values = found.map(|event| event.point.value);
+        values.filter(|value| (0.83..0.86).contains(value)).count()
+    };
+    for [from, to] in [[0.7, 0.95], [0.95, 0.7]] {
+        let request = request.clone().from(from).to(to);
+        let moved = request.clone().by(Shooting::new());
+        let solved = request.by(ContactEquation::new());
+        let corner = "\"bend\":\"corner\"";
+        assert!(says(&moved, "corner", corner) && says(&solved, "corner", corner));
+        resumes(&moved, &model, "corner", 1);
+        resumes(&solved, &model, "corner", 1);
+        let found = [moved.run(), solved.run()].map(|found| doublings(&found.expect("a branch")));
+        assert_eq!(found, [2, 2]);
+    }
+}
+
 /// What is in the file at any moment is what a killed program leaves; a line that is not whole does not count.
 #[test]
 fn from_a_file_that_was_kept() {

@@ -432,3 +432,6 @@ fn direct(point: &mut CurvePoint, forwards: f64) {
         *t *= forwards;
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -58,6 +58,9 @@ struct Algebraic {
     three: bool,
     /// Behind the first fold other unknowns are asked for, in which the orbit before has no place.
     displaces: bool,
+    /// Behind so many points a step is too far, and from there on nothing is found while `z` is an unknown.
+    breaks: Option<usize>,
+    broken: bool,
     record: Record,
 }
 
@@ -67,6 +70,8 @@ impl Algebraic {
             shape,
             three: false,
             displaces: false,
+            breaks: None,
+            broken: false,
             record: Record::default(),
         }
     }
@@ -92,7 +97,8 @@ impl Problem for Algebraic {
     fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
         let (x, y, parameter) = (u[0], u[1], u[u.len() - 1]);
         let (value, slope) = (self.shape)(x);
-        residual[0] = value - parameter;
+        let found = !(self.broken && self.three);
+        residual[0] = if found { value - parameter } else { f64::NAN };
         residual[1] = y * (x - 1.5) - y * y * y;
         if self.three {
             residual[2] = u[2] - x * x;
@@ -170,6 +176,10 @@ impl BranchProblem for Algebraic {
     fn read(&mut self, _: &mut Newton, at: &CurvePoint) -> Read {
         if self.displaces && at.u[0] > -1.0 {
             return Read::Refused;
+        }
+        if self.breaks == Some(self.points()) && !self.broken {
+            self.broken = true;
+            return Read::TooFar;
         }
         self.record.points.push(orbit(&at.u));
         // From here on, and for a while.
@@ -313,6 +323,23 @@ fn a_turn_in_a_step_that_is_not_seen_is_said() {
     let folds = branch.events().into_iter();
     let folds: Vec<_> = folds.filter(|event| event.0 == EventKind::Fold).collect();
     assert!(folds.len() == 1 && (folds[0].1 - 1.0).abs() < 1e-9);
+}
+
+/// Other unknowns have led on from the point at which they were gone over to, by five points, before a walk goes back by one of these and finds nothing there. The former
+/// unknowns belong to a point that was passed long before: the walk ends where it is.
+#[test]
+fn a_walk_that_finds_nothing_where_it_went_back_ends_there() {
+    let branch = Algebraic {
+        breaks: Some(25),
+        ..Algebraic::of(cubic)
+    };
+    let (branch, stop) = followed_by(branch, -8.0, 8.0, Start::Near(vec![-2.4, 0.0, -8.0]));
+    assert!(matches!(stop, Stop::StepTooShort { .. }), "{stop:?}");
+    assert!(branch.broken && branch.three);
+    // The cubic is followed from left to right, and no point twice.
+    let places: Vec<f64> = branch.solutions().map(|u| u[0]).collect();
+    assert_eq!(places.len(), 25);
+    assert!(places.windows(2).all(|pair| pair[0] < pair[1]));
 }
 
 /// Between the folds the branch has three solutions at a value.

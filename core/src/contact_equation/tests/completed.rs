@@ -2,11 +2,15 @@
 
 use std::f64::consts::TAU;
 
+use crate::branches::observed::Motion;
 use crate::cancel::Cancel;
+use crate::contact_equation::completed::Solved;
 use crate::contact_equation::equations::setting::Setting;
 use crate::contact_equation::march::March;
+use crate::contact_equation::problem::ContactProblem;
+use crate::shooting::Asked;
 use crate::system::{System, Variable};
-use crate::{ContactEquation, FrequencyResponse, time};
+use crate::{ContactEquation, FrequencyResponse, Shooting, time};
 
 crate::oscillator! {
     /// A mass before a ball on a spring that is a thousand times as stiff, with a pull that grows until the ball lets go.
@@ -27,6 +31,17 @@ crate::oscillator! {
         let force = ball(x*cos(angle) + y*sin(angle) - 0.1);
         ddot(x) + x + force*cos(angle) = 0.1*cos(omega*t);
         ddot(y) + 0.1*dot(y) + 2*y + force*sin(angle) = 0.1;
+    }
+}
+
+crate::oscillator! {
+    /// A mass before a ball, beside a mode that is a thousand times as fast.
+    Aside(x, y) {
+        law ball(g) { g > 0 => 40*g^1.5, else => 0 }
+        ddot(x) + 0.05*dot(x) + x + ball(x + 0.1*y - 0.05) = 0.2*cos(omega*t);
+        ddot(y) + 100*dot(y) + 1_000_000*y + 0.1*ball(x + 0.1*y - 0.05) = 0;
+        output squeezed = x + 0.1*y;
+        output force = force(ball);
     }
 }
 
@@ -72,6 +87,49 @@ fn orbits_at_folds_are_those_of_the_branch() {
         for (known, own) in pairs.zip(&completed.observed.outputs) {
             let apart = own.apart(known) / known.peak_to_peak();
             assert!(apart < 1e-6, "{}: {apart:e}", point.value);
+        }
+    }
+}
+
+/// What is read of an orbit that was solved for again is what shooting reads of it, without an integration; and it is what a branch completes its orbits by.
+#[test]
+fn stiff_orbits_are_solved_for_again() {
+    let request = FrequencyResponse::of(&Aside {}).by(ContactEquation::new());
+    let request = request.from(0.9).to(1.1).tolerance(1e-6);
+    let branch = request.run().unwrap();
+    let shooting = Shooting::new();
+    let apart = |a: &Motion, b: &Motion| {
+        let ends = (a.minimum - b.minimum)
+            .abs()
+            .max((a.maximum - b.maximum).abs());
+        let pairs = [a.mean.zip(b.mean), a.rms.zip(b.rms)];
+        let sums = pairs.into_iter().flatten().map(|(a, b)| (a - b).abs());
+        sums.fold(ends, f64::max) / b.peak_to_peak()
+    };
+    for point in branch.points.iter().step_by(7) {
+        let asked = Asked::of(&request.request, &shooting).held();
+        let asked = asked.problem(point.value, point.value).unwrap();
+        let problem = ContactProblem::new(asked, 1e-6);
+        let completed = Solved::of(&problem, point).unwrap().complete(point);
+        assert_eq!(branch.complete(point).unwrap(), completed);
+        let exact = FrequencyResponse::of(&Aside {}).by(Shooting::new());
+        let exact = exact.tolerance(1e-12).near_orbit(&point.orbit);
+        let exact = exact.orbit(point.value).unwrap();
+        let [own, exact] = [&completed, &exact].map(|point| &point.observed);
+        assert!(own.outputs.iter().all(|output| output.rms.is_some()));
+        for (own, exact) in own.motions.iter().zip(&exact.motions) {
+            assert!(
+                apart(own, exact) < 1e-8,
+                "{}: {own:?} {exact:?}",
+                point.value
+            );
+        }
+        for (own, exact) in own.outputs.iter().zip(&exact.outputs) {
+            assert!(
+                apart(own, exact) < 1e-7,
+                "{}: {own:?} {exact:?}",
+                point.value
+            );
         }
     }
 }

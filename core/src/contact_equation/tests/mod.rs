@@ -5,6 +5,8 @@ mod both_sides;
 mod closed;
 mod completed;
 mod grazings;
+mod growing;
+mod images;
 mod jumps;
 mod kinks;
 mod minimal_period;

@@ -165,3 +165,48 @@ fn forces_of_contacts_that_hardly_close_are_read() {
         assert!((own / exact - 1.0).abs() < 1e-6, "{own:e} {exact:e}");
     }
 }
+
+crate::oscillator! {
+    /// Two masses, one between elastic stops and the other one between balls: orbits come back with signs changed after half of the period.
+    Mixed(x, y) {
+        law right(g) { g > 0 => 20*g + 0.2*dot(g), else => 0 }
+        law left(g) { g < 0 => 20*g + 0.2*dot(g), else => 0 }
+        law upper(g) { g > 0 => 30*g^1.5, else => 0 }
+        law lower(g) { g > 0 => 30*g^1.5, else => 0 }
+        param lean = 0;
+        ddot(x) + 0.1*dot(x) + x - 0.5*(y - x) + right(x - 0.6) + left(x + 0.6) = 1.2*cos(omega*t) + lean;
+        ddot(y) + 0.1*dot(y) + 2*y + 0.5*(y - x) + upper(y - 0.2) - lower(-y - 0.2) = 0;
+        output push = force(right);
+        output grip = force(upper);
+        output rate = dot(x) - 2*dot(y) + 0.1;
+        output both = x + 0.05*force(left) - 0.02*force(lower) - 0.3;
+        output sum = x - 2*y + 0.25;
+    }
+}
+
+/// Between balls forces are unknown at nodes: there outputs with rates or forces of balls are read by rules, and in closed form on all other intervals.
+#[test]
+fn outputs_partly_by_rules_are_those_of_shooting() {
+    for lean in [0.0, 0.05] {
+        let system = Mixed { lean };
+        let request = FrequencyResponse::of(&system).tolerance(1e-11);
+        let exact = request.clone().by(Shooting::new()).tolerance(1e-12);
+        let exact = exact.orbit(1.1).unwrap();
+        let request = request.by(ContactEquation::new());
+        let own = request.near_orbit(&exact.orbit).orbit(1.1).unwrap();
+        assert_eq!(own.orbit.parts, if lean == 0.0 { 2 } else { 1 });
+        let mut contacts = exact.observed.contacts.iter();
+        assert!(contacts.all(|contact| contact.fraction > 0.05));
+        let pairs = own.observed.outputs.iter().zip(&exact.observed.outputs);
+        for (output, (own, exact)) in pairs.enumerate() {
+            let small = 1e-8 * exact.peak_to_peak();
+            let numbers = |of: &Motion| [of.minimum, of.maximum, of.mean.unwrap(), of.rms.unwrap()];
+            for (own, exact) in numbers(own).into_iter().zip(numbers(exact)) {
+                assert!(
+                    (own - exact).abs() < small,
+                    "{lean} {output}: {own} {exact}"
+                );
+            }
+        }
+    }
+}

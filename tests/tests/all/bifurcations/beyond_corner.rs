@@ -5,26 +5,7 @@
 
 use hertzian::{ContactEquation, EventKind, FrequencyResponse, Shooting, Stop, System};
 
-hertzian::oscillator! {
-    /// Between two stops whose forces begin with a jump.
-    Preloads(x) {
-        param drive;
-        param p;
-        law stop(gap) { gap >= 0 => p + 4*gap, else => 0 }
-        ddot(x) + 0.1*dot(x) + x + stop(x - 1) - stop(-x - 1.2) = drive*cos(omega*t);
-    }
-}
-
-hertzian::oscillator! {
-    /// Two masses, one of them beside a stop with a preload.
-    Preloaded(x, y) {
-        param drive;
-        param preload;
-        law stop(gap) { gap >= 0 => preload + 8*gap, else => 0 }
-        ddot(x) + 0.04*dot(x) + x + 0.3*(x - y) + stop(x - 1) = drive*cos(omega*t);
-        0.5*ddot(y) + 0.04*dot(y) + 0.6*y + 0.3*(y - x) = 0;
-    }
-}
+use crate::bifurcations::preloads::{Masses, Preloads, assert_places};
 
 /// Both ways, by both methods: the doublings within a window are those that are known, and the branch goes on to the end.
 fn assert_doublings(system: &dyn System, range: [f64; 2], window: [f64; 2], expected: &[f64]) {
@@ -36,17 +17,7 @@ fn assert_doublings(system: &dyn System, range: [f64; 2], window: [f64; 2], expe
         for branch in [moved, solved] {
             assert_eq!(branch.stopped, Stop::ReachedEnd);
             assert_eq!(branch.turns, []);
-            let doublings = branch.events(EventKind::PeriodDoubling);
-            let values = doublings.map(|event| event.point.value);
-            let mut values: Vec<f64> = values
-                .filter(|value| (window[0]..window[1]).contains(value))
-                .collect();
-            values.sort_by(f64::total_cmp);
-            assert_eq!(values.len(), expected.len(), "{from} {to}: {values:?}");
-            for (value, expected) in values.iter().zip(expected) {
-                let error = (value - expected).abs();
-                assert!(error < 2e-12, "{value}: {error:.1e}");
-            }
+            assert_places(&branch, EventKind::PeriodDoubling, window, expected, 2e-12);
         }
     }
 }
@@ -84,7 +55,7 @@ fn two_doublings_of_two_masses_beside_a_touch_are_found() {
         0.963_018_199_642_2,
         1.004_652_409_337_2,
     ];
-    let system = &Preloaded {
+    let system = &Masses {
         drive: 0.1861,
         preload: 0.0646,
     };

@@ -6,16 +6,7 @@
 use hertzian::{ContactEquation, EventKind, FrequencyResponse, Shooting, System};
 
 use crate::bifurcations::limbs::agrees;
-
-hertzian::oscillator! {
-    /// Between two stops whose forces begin with a jump.
-    Preloads(x) {
-        param drive;
-        param p;
-        law stop(gap) { gap >= 0 => p + 4*gap, else => 0 }
-        ddot(x) + 0.1*dot(x) + x + stop(x - 1) - stop(-x - 1.2) = drive*cos(omega*t);
-    }
-}
+use crate::bifurcations::preloads::{Masses, Preloads, assert_places};
 
 hertzian::oscillator! {
     /// Before a stop whose force begins with a jump.
@@ -24,17 +15,6 @@ hertzian::oscillator! {
         param p;
         law stop(gap) { gap >= 0 => p + 4*gap, else => 0 }
         ddot(x) + 0.1*dot(x) + x + stop(x - 1) = drive*cos(omega*t);
-    }
-}
-
-hertzian::oscillator! {
-    /// Two masses, one of them before a stop with a preload.
-    Masses(x, y) {
-        param drive;
-        param preload;
-        law stop(gap) { gap >= 0 => preload + 8*gap, else => 0 }
-        ddot(x) + 0.04*dot(x) + x + 0.3*(x - y) + stop(x - 1) = drive*cos(omega*t);
-        0.5*ddot(y) + 0.04*dot(y) + 0.6*y + 0.3*(y - x) = 0;
     }
 }
 
@@ -55,17 +35,7 @@ fn assert_folds(system: &dyn System, range: [f64; 2], window: [f64; 2], expected
     let by_shooting = request.clone().by(Shooting::new()).run().unwrap();
     let by_contact_equation = request.by(ContactEquation::new()).run().unwrap();
     for branch in [by_shooting, by_contact_equation] {
-        let folds = branch.events(EventKind::Fold);
-        let values = folds.map(|event| event.point.value);
-        let mut values: Vec<f64> = values
-            .filter(|value| (window[0]..window[1]).contains(value))
-            .collect();
-        values.sort_by(f64::total_cmp);
-        assert_eq!(values.len(), expected.len(), "{values:?}");
-        for (value, expected) in values.iter().zip(expected) {
-            let error = (value - expected).abs();
-            assert!(error < 5e-12, "{value}: {error:.1e}");
-        }
+        assert_places(&branch, EventKind::Fold, window, expected, 5e-12);
     }
 }
 

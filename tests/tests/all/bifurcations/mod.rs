@@ -25,6 +25,7 @@ mod limbs_of_jumps;
 mod meeting;
 mod mirrored;
 mod narrow;
+mod preloads;
 mod symmetry;
 mod table;
 mod torus;

@@ -1,8 +1,10 @@
 //! The edges of the range: no damping, no load, many impacts in a period, small and large exponents.
 
+use hertzian::error::ErrorKind;
 use hertzian::stability::Method;
 use hertzian::{
-    Error, FrequencyResponse, HarmonicBalance, Point, Shooting, Stability, System, Verdict,
+    ContactEquation, Error, FrequencyResponse, HarmonicBalance, Point, Shooting, Stability, Stop,
+    System, Verdict,
 };
 
 use super::models::{Continuous, OneSided, answer, distance, first, shown, start};
@@ -156,4 +158,59 @@ fn many_impacts_in_a_slow_period() {
             }
         }
     }
+}
+
+hertzian::oscillator! {
+    /// Friction that drives, of full size from a rate of 1e-6 on.
+    Driving(x) {
+        param m = 0.017992496567387047 > 0;
+        param c = 0.6630265812346576 > 0;
+        param k = 7358.942140920422 > 0;
+        param f = -0.006274728731116827;
+        param v = 8.420281407601276e-7 > 0;
+        param drive = 0.0038775922836808284 > 0;
+        law friction(gap) { f*tanh(dot(gap)/v) }
+        m*ddot(x) + c*dot(x) + k*x + friction(x + 3.7128288048460213e-6) = drive*cos(omega*t);
+    }
+}
+
+/// So slow a motion is the load's against friction alone: `f tanh(x'/v) = drive cos(omega t)`, with the spring in quadrature to it and a three
+/// hundredth as large. Its multipliers are `exp(6000)`: a method follows this orbit in both directions, or says that it finds none.
+#[test]
+fn friction_that_drives() {
+    let system = Driving::default();
+    let samples = 2000;
+    let phases = (0..samples).map(|sample| {
+        let phase = (f64::from(sample) + 0.5) / f64::from(samples);
+        (std::f64::consts::FRAC_PI_2 * phase).cos()
+    });
+    let rates = phases.map(|cosine| system.v * (system.drive / system.f.abs() * cosine).atanh());
+    let way = std::f64::consts::PI * rates.sum::<f64>() / f64::from(samples);
+    let [low, high] = [414.325_340_920_372_47, 458.518_440_191_908_7];
+    let mut followed = 0;
+    for [from, to] in [[low, high], [high, low]] {
+        let request = FrequencyResponse::of(&system).from(from).to(to);
+        let balance = request.clone().by(HarmonicBalance::new());
+        for found in [
+            balance.run(),
+            request.clone().bifurcations(true).run(),
+            request.clone().by(Shooting::new()).run(),
+            request.by(ContactEquation::new()).run(),
+        ] {
+            let branch = match found {
+                Ok(branch) => branch,
+                Err(error) => {
+                    assert_eq!(error.kind(), ErrorKind::NoOrbit, "{error}");
+                    continue;
+                }
+            };
+            for point in &branch.points {
+                let apart = point.peak_to_peak() * point.omega() / way - 1.0;
+                assert!(apart.abs() < 1e-3, "{}: {apart:e}", point.value);
+            }
+            assert_eq!(branch.stopped, Stop::ReachedEnd);
+            followed += 1;
+        }
+    }
+    assert!(followed >= 2, "{followed}");
 }
