@@ -4,6 +4,8 @@
 use std::cell::RefCell;
 
 use crate::contact_equation::collocation::nodes::Nodes;
+use crate::contact_equation::linear_part::block::Block;
+use crate::contact_equation::linear_part::values::Values;
 use crate::contact_equation::orbit::motion::Within;
 use crate::shooting::signals::at_nodes::AtNodes;
 use crate::time::Stretch;
@@ -38,10 +40,17 @@ impl Stretch for Read<'_, '_> {
     }
 }
 
+/// Last coefficients of signals, in parts of their largest value, up to which their nodes tell all of an integral: where nothing turns by more radians than
+/// half of the nodes, so that what follows is ever smaller; and where it may ring between them, which then is noise.
+const SLOW: f64 = 1e-6;
+const FAST: f64 = 1e-7;
+
 /// An interval with forces at nodes, which has its states there.
 pub(in crate::contact_equation) struct ReadAtNodes<'m, 'e> {
     read: Read<'m, 'e>,
     nodes: &'static Nodes,
+    /// Last coefficients up to which a signal is known, in parts of its largest value.
+    least: f64,
 }
 
 impl<'m, 'e> ReadAtNodes<'m, 'e> {
@@ -49,9 +58,14 @@ impl<'m, 'e> ReadAtNodes<'m, 'e> {
     pub(in crate::contact_equation) fn new(within: Within<'m, 'e>) -> Option<Self> {
         let Within { motion, interval } = within;
         let of = &motion.equations.skeleton.intervals[interval];
+        let Values { base, linear, .. } = &motion.equations.values;
+        let [from, to] = motion.phases(interval);
+        let fastest = linear.blocks.iter().map(Block::rate).fold(0.0, f64::max);
+        let is_slow = fastest * (to - from) / base <= 0.5 * of.nodes.count() as f64;
         (!of.active.is_empty()).then(|| Self {
             read: Read::new(within),
             nodes: of.nodes,
+            least: if is_slow { SLOW } else { FAST },
         })
     }
 }
@@ -87,7 +101,8 @@ impl AtNodes for ReadAtNodes<'_, '_> {
         linear.write_physical(states, state);
     }
 
-    fn last(&self, values: &[f64]) -> f64 {
-        self.nodes.tail(values)
+    fn is_known(&self, values: &[f64]) -> bool {
+        let largest = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        self.nodes.tail(values) <= self.least * largest
     }
 }

@@ -9,9 +9,6 @@
 use super::{Found, Reader};
 use crate::time::Stretch;
 
-/// Last coefficients, in parts of the largest value, up to which a signal is known by its nodes: their product is rounding.
-const KNOWN: f64 = 1e-7;
-
 /// A stretch whose states are known at the nodes of a Gauss rule, in a variable that its motion is smooth in.
 pub(crate) trait AtNodes: Stretch {
     /// How many there are.
@@ -23,8 +20,8 @@ pub(crate) trait AtNodes: Stretch {
     /// Writes the state at a node.
     fn state_at(&self, node: usize, state: &mut [f64]);
 
-    /// The last coefficients of the polynomial with these values at the nodes.
-    fn last(&self, values: &[f64]) -> f64;
+    /// Whether the last coefficients of the polynomial with these values at the nodes are so small that its integrals are those of the signal.
+    fn is_known(&self, values: &[f64]) -> bool;
 }
 
 impl Reader<'_> {
@@ -48,11 +45,8 @@ impl Reader<'_> {
         // Channel after channel.
         let columns = (0..channels).flat_map(|channel| rows[channel..].iter().step_by(channels));
         let columns: Vec<f64> = columns.copied().collect();
-        let is_known = |(channel, values): (usize, &[f64])| {
-            let largest = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-            !self.is_looked_at(channel) || stretch.last(values) <= KNOWN * largest
-        };
-        if !columns.chunks_exact(count).enumerate().all(is_known) {
+        let mut of_channels = columns.chunks_exact(count).enumerate();
+        if !of_channels.all(|(channel, of)| !self.is_looked_at(channel) || stretch.is_known(of)) {
             return false;
         }
         let signals = self.found.len();
