@@ -328,8 +328,8 @@ impl Nodes {
         let known = rule.done.map_or(0.0, |target| self.targets[target]);
         rule.left = psi - known;
         rule.points.clear();
-        rule.values.clear();
         if done > n || psi <= known {
+            rule.values.clear();
             return;
         }
         let from = rule.done.map_or(-1.0, |target| self.y[target]);

@@ -127,7 +127,8 @@ impl Integrals {
         let Self {
             input, load, row, ..
         } = self;
-        for load in load.iter_mut() {
+        let loads = if self.moves { 3 } else { 1 };
+        for load in &mut load[..loads] {
             load[..n * order].fill(0.0);
         }
         let [from, to] = of.phases;
@@ -239,7 +240,6 @@ impl Integrals {
         let (n, order) = (self.nodes, self.row.len());
         let rule = of.nodes.rule(place);
         let count = rule.left.len();
-        self.at_points.clear();
         self.at_points.resize(count, 0.0);
         if self.moves {
             let load = &self.load[0][state * n..][..n];
@@ -257,10 +257,17 @@ impl Integrals {
         let mut acts = false;
         for (place, forces) in forces.chunks_exact(count).enumerate() {
             let by = self.input[(place * order + state) * n];
-            if by != 0.0 {
-                add(&mut self.at_points, by, forces);
-                acts = true;
+            if by == 0.0 {
+                continue;
             }
+            if acts {
+                add(&mut self.at_points, by, forces);
+            } else {
+                for (to, force) in self.at_points.iter_mut().zip(forces) {
+                    *to = by * force;
+                }
+            }
+            acts = true;
         }
         acts
     }
