@@ -8,7 +8,7 @@ use crate::contact_equation::skeleton::interval::Interval;
 use crate::numeric::linear::Placed;
 
 /// Numbers in tables of all intervals up to which each keeps its own.
-const KEPT: usize = 1 << 22;
+const KEPT: usize = 1 << 20;
 
 /// Room for a pass.
 #[derive(Debug, Default)]

@@ -6,6 +6,7 @@ mod closed;
 mod completed;
 mod grazings;
 mod jumps;
+mod kept_tables;
 mod kinks;
 mod minimal_period;
 mod modes;
