@@ -7,6 +7,9 @@ use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::interval::Interval;
 use crate::numeric::linear::Placed;
 
+/// Numbers in tables of all intervals up to which each keeps its own.
+const KEPT: usize = 1 << 20;
+
 /// Room for a pass.
 #[derive(Debug, Default)]
 pub(in crate::contact_equation) struct Room {
@@ -16,7 +19,9 @@ pub(in crate::contact_equation) struct Room {
     pub(super) by_next: Vec<f64>,
     /// The steady response where an interval begins, with its derivatives.
     pub(super) steady_from: [Vec<f64>; 3],
-    pub(super) integrals: Integrals,
+    /// Of every interval with forces, or of one at a time where those would be too large; and which of them is that of an interval.
+    pub(super) integrals: Vec<Integrals>,
+    pub(super) integrals_of: Vec<usize>,
     pub(in crate::contact_equation) targets: Targets,
     /// Per active contact and node: gap and rate, and what they are of the states as rows.
     pub(in crate::contact_equation) outputs: Vec<Output>,
@@ -50,6 +55,13 @@ impl Room {
         self.by_next.resize(size, 0.0);
     }
 
+    /// The linear part is another one.
+    pub(super) fn forget(&mut self) {
+        for integrals in &mut self.integrals {
+            integrals.forget();
+        }
+    }
+
     pub(in crate::contact_equation) fn new(skeleton: &Skeleton) -> Self {
         let (order, columns) = (skeleton.order, skeleton.told() + 1);
         let most =
@@ -63,12 +75,14 @@ impl Room {
             order * order
         };
         let switches = skeleton.switches.len();
+        let (integrals, integrals_of) = integrals(skeleton, [nodes, forces]);
         Self {
             y: states(),
             by: Vec::new(),
             by_next: Vec::new(),
             steady_from: std::array::from_fn(|_| states()),
-            integrals: Integrals::new(order, nodes, forces),
+            integrals,
+            integrals_of,
             targets: Targets::new(order, nodes + 1),
             outputs: vec![Output::default(); forces],
             gap_rows: vec![0.0; forces * order],
@@ -89,4 +103,29 @@ impl Room {
             read_at: vec![0; switches],
         }
     }
+}
+
+/// Integrals of intervals that have so many nodes and forces at most, and which of them each has.
+fn integrals(skeleton: &Skeleton, [nodes, forces]: [usize; 2]) -> (Vec<Integrals>, Vec<usize>) {
+    let order = skeleton.order;
+    let with_forces = |interval: &&Interval| !interval.active.is_empty();
+    let size = |interval: &Interval| {
+        let n = interval.nodes.count();
+        order * n * (n + 1)
+    };
+    let all = skeleton.intervals.iter();
+    if all.clone().filter(with_forces).map(size).sum::<usize>() > KEPT {
+        let one = Integrals::new(order, nodes, forces);
+        return (vec![one], vec![0; skeleton.intervals.len()]);
+    }
+    let own = all.clone().filter(with_forces);
+    let own = own.map(|interval| Integrals::new(order, interval.nodes.count(), interval.forces()));
+    let mut next = 0;
+    let places = all.map(|interval| {
+        let place = next;
+        next += usize::from(!interval.active.is_empty());
+        place
+    });
+    let places = places.collect();
+    (own.collect(), places)
 }
