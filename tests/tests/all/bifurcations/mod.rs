@@ -4,6 +4,7 @@ mod asked;
 mod backbone;
 mod balance;
 mod behind_touch;
+mod beside_corner;
 mod beyond_corner;
 mod by_contact_equation;
 mod cascade;
