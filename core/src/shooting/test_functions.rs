@@ -31,6 +31,8 @@ const UNRESOLVED: f64 = 1e-2;
 const CROSSING: usize = 0;
 pub(crate) const DOUBLING: usize = 1;
 const MODULI: usize = 2;
+/// Multipliers nearer to one, to minus one or to the unit circle may be on either side of it by rounding.
+const TOLD: f64 = 1e-6;
 
 /// The test functions at one orbit.
 #[derive(Debug, Clone)]
@@ -133,13 +135,24 @@ impl Tests {
         }
     }
 
-    /// Whether determinants have the signs of others, and as many multipliers are outside of the unit circle.
+    /// Whether determinants have the signs of others, and as many multipliers are outside of the unit circle, as far as rounding lets that be told.
     pub(crate) fn tell_as(&self, other: &Self) -> bool {
-        let outside = |tests: &Self| tests.multipliers.iter().filter(|m| m.norm() > 1.0).count();
-        let alike = |a: f64, b: f64| a.is_nan() || b.is_nan() || a * b > 0.0;
-        alike(self.minus, other.minus)
-            && alike(self.plus, other.plus)
-            && outside(self) == outside(other)
+        let both = [self, other];
+        let is_told = |at: f64| {
+            let mut multipliers = both.iter().flat_map(|tests| &tests.multipliers);
+            multipliers.all(|m| (m - at).norm() > TOLD)
+        };
+        let alike = |a: f64, b: f64, at: f64| a * b >= 0.0 || (a * b).is_nan() || !is_told(at);
+        let outside = |tests: &Self, radius: f64| {
+            let multipliers = tests.multipliers.iter();
+            multipliers.filter(|m| m.norm() > radius).count()
+        };
+        let [least, most] =
+            [1.0 + TOLD, 1.0 - TOLD].map(|radius| both.map(|of| outside(of, radius)));
+        alike(self.minus, other.minus, 1.0)
+            && alike(self.plus, other.plus, -1.0)
+            && least[0] <= most[1]
+            && least[1] <= most[0]
     }
 
     pub(crate) fn value(&self, test: Test) -> f64 {

@@ -10,7 +10,8 @@
 //! of the way `s` along the branch, in units `l` of that to the end of the step, and may pass zero twice in a part of it that is small in `s`. Orbits
 //! are computed at two places in `r`, and where between these (1) or (2) of [`inside`](super::inside) come down to zero in `r`. The same is
 //! done in the next step, since the first may end next to the touch. Where the force jumps determinants go as `a + b / r` instead, as
-//! [behind a corner](super::beyond_corner), and `r` times that is smooth: it is looked at in the first step from where the walk goes on.
+//! [behind a corner](super::beyond_corner), where the way itself goes as the root of the height: with `r = s / l` in place of (1) `r` times them is smooth, and is
+//! looked at in the first step from where the walk goes on.
 //!
 //! Source: Nordmark (1991), Non-periodic motion caused by grazing incidence in an impact oscillator, Journal of Sound and Vibration 145 (the root);
 //! di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2.
@@ -41,7 +42,7 @@ struct Behind<'s> {
     /// From the touch on, with `r`.
     known: Vec<(f64, Seen)>,
     falls: Option<bool>,
-    /// Determinants go as `1 / r`.
+    /// The force jumps: determinants go as `1 / r`, and `r` as the way.
     unbounded: bool,
     options: NewtonOptions,
 }
@@ -103,9 +104,9 @@ impl Engine {
         if !goes_on {
             return Vec::new();
         }
-        let middle = part.sqrt();
+        let middle = place_of(part, crossed.jumps);
         let inner = |at: &Seen| {
-            let r = (along.at(&at.point.u) / ways[1]).sqrt();
+            let r = place_of(along.at(&at.point.u) / ways[1], crossed.jumps);
             (r > 0.0 && r < middle).then_some(r)
         };
         let earlier = earlier.filter(|at| at.point.u.len() == length);
@@ -170,7 +171,8 @@ impl Behind<'_> {
     ) -> bool {
         let [(from, a), (to, b)] = self.beside(place).map(|at| &self.known[at]);
         let step = step_between([a, b]);
-        let part = (place * place - from * from) / (to * to - from * from);
+        let way = |r: f64| if self.unbounded { r } else { r * r };
+        let part = (way(place) - way(*from)) / (way(*to) - way(*from));
         let Some(point) = inside_over(problem.equations(), newton, step, part, self.options) else {
             return false;
         };
@@ -178,7 +180,7 @@ impl Behind<'_> {
             return false;
         }
         // Arc lengths of two orbits differ where the branch bends.
-        let here = (self.along.at(&point.u) / self.whole).max(0.0).sqrt();
+        let here = place_of(self.along.at(&point.u) / self.whole, self.unbounded);
         let place = if here > *from && here < *to {
             here
         } else {
@@ -196,17 +198,14 @@ impl Behind<'_> {
         let of_map: Vec<usize> = watched
             .filter(|of| problem.is_of_multipliers(*of))
             .collect();
-        for test in of_map.into_iter().map(Test::Watched) {
-            let noise = noise_of(problem, test, self.begin);
-            let of_modulus = match test {
-                Test::Slope => true,
-                Test::Watched(of) => problem.watched()[of].kind == EventKind::NeimarkSacker,
-            };
-            let unbounded = self.unbounded && !of_modulus;
+        for of in of_map {
+            let noise = noise_of(problem, Test::Watched(of), self.begin);
+            let is_modulus = problem.watched()[of].kind == EventKind::NeimarkSacker;
+            let unbounded = self.unbounded && !is_modulus;
             // Parts in which no orbit is found, as next to the touch, hide none of the others.
             let mut shut: Vec<f64> = Vec::new();
             for _ in 0..LOOKS {
-                let Some(heights) = self.heights(test, noise, unbounded) else {
+                let Some(heights) = self.heights(Test::Watched(of), noise, unbounded) else {
                     break;
                 };
                 let parts = heights
@@ -231,23 +230,28 @@ impl Behind<'_> {
         }
     }
 
-    /// How far a test function is above zero at all places, if it is so everywhere; times `r` if it is unbounded.
+    /// How far a test function is above zero at all places, if it is so everywhere between both ends; times `r` if it is unbounded. Of what is known before
+    /// them, what leads there with one sign.
     fn heights(&self, test: Test, noise: f64, unbounded: bool) -> Option<Vec<Height>> {
         let values = self.known.iter().map(|(_, seen)| seen.value(test));
         let reference = values.clone().map(|value| value.exponent);
         let reference = reference.fold(f64::NEG_INFINITY, f64::max);
         let sign = self.begin.value(test).mantissa.signum();
-        let places = self.known.iter().map(|(place, _)| *place);
-        let heights = places.zip(values).map(|(place, value)| {
-            let weight = if unbounded { place } else { 1.0 };
+        let above = values.map(|value| sign * value.relative_to(reference));
+        let above: Vec<f64> = above.collect();
+        let is_low = |above: &f64| !(*above > noise);
+        let first = above.iter().rposition(is_low).map_or(0, |place| place + 1);
+        let known = self.known[first..].iter().zip(&above[first..]);
+        let heights = known.map(|((place, _), above)| {
+            let weight = if unbounded { *place } else { 1.0 };
             Height {
-                place,
-                height: weight * sign * value.relative_to(reference),
+                place: *place,
+                height: weight * above,
             }
         });
         let heights: Vec<Height> = heights.collect();
-        let above = heights.iter().all(|known| known.height > noise);
-        above.then_some(heights)
+        let reaches = heights.first()?.place <= self.range[0];
+        reaches.then_some(heights)
     }
 
     /// What was computed.
@@ -256,4 +260,10 @@ impl Behind<'_> {
         let inner = self.known.into_iter().filter(|(r, _)| *r > from && *r < to);
         inner.map(|(_, seen)| seen).collect()
     }
+}
+
+/// `r` at a part of the way.
+fn place_of(part: f64, unbounded: bool) -> f64 {
+    let part = part.max(0.0);
+    if unbounded { part } else { part.sqrt() }
 }

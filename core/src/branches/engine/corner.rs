@@ -294,7 +294,7 @@ impl Engine {
         } = passed;
         let point = &corner.touch.located.point;
         let behind = self.behind.as_ref()?;
-        let is_followed = extreme.is_clear() && extreme.bend == Bend::Corner;
+        let is_followed = extreme.is_clear() && extreme.bend == Bend::Corner && !extreme.begins;
         is_followed.then(|| {
             let touch = Seen {
                 point: point.clone(),

@@ -521,9 +521,16 @@ impl TouchSearch<'_> {
         let is_known = |value: f64| self.found.iter().any(|other| (other - value).abs() <= same);
         let near = approach.close_in(problem, newton, options);
         let located = match near {
-            Some(near) if !is_known(near.located.point.parameter()) => Some(near),
+            Some(near) if !is_known(near.value()) => Some(near),
             // Of an extreme that goes through its level twice, what leads to one of both places leads back to the other.
-            known => on_the_way(problem, newton, step, found[0], options).or(known),
+            Some(near) => {
+                let other = (extreme.bend != Bend::Corner)
+                    .then(|| on_the_way(problem, newton, step, found[0], options))
+                    .flatten();
+                let other = other.filter(|other| other.is_apart(&near, same));
+                other.or(Some(near))
+            }
+            None => on_the_way(problem, newton, step, found[0], options),
         };
         let Some(Reached {
             located,

@@ -15,7 +15,7 @@
 //! (corners of branches).
 
 use super::zero::{Aim, root};
-use crate::branches::extreme::{Extreme, Passage};
+use crate::branches::extreme::{Bend, Extreme, Passage};
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::Located;
@@ -35,6 +35,8 @@ const CLOSER: f64 = 0.03;
 const EXACT: f64 = 1e-12;
 /// Orbits on the way, at most.
 const ORBITS: usize = 16;
+/// Two touches are told from each other by so many times their errors.
+const ERRORS: f64 = 10.0;
 /// Where an extreme jumps by less than this part of what it rises by from either end of a step, it goes through its level there.
 const SMALL: f64 = 1e-3;
 
@@ -95,7 +97,9 @@ fn on_the_way_to(
     let Located { test, jump, .. } = root.located;
     let rate = ((to - from) / (next.above - before.above)).abs();
     // Of orbits that are known less well extremes may jump as little, where equations with more nodes have no jump.
-    let jumps_little = jump > 0.0 && jump <= SMALL * before.above.abs().min(next.above.abs());
+    let jumps_little = extreme.bend != Bend::Corner
+        && jump > 0.0
+        && jump <= SMALL * before.above.abs().min(next.above.abs());
     let left = if jumps_little { jump } else { test.abs() };
     (left <= TOUCHES || jumps_little).then_some(Reached {
         located: root.located,
@@ -121,6 +125,19 @@ pub(super) struct Reached {
     pub(super) error: f64,
     /// What the parameter changes by while the extreme rises by half of the gap's range.
     pub(super) rate: f64,
+}
+
+impl Reached {
+    /// What is varied there.
+    pub(super) fn value(&self) -> f64 {
+        self.located.point.parameter()
+    }
+
+    /// Whether it is told from another one by both of their errors, and by no less than that.
+    pub(super) fn is_apart(&self, other: &Self, least: f64) -> bool {
+        let errors = ERRORS * (self.error + other.error);
+        (self.value() - other.value()).abs() > errors.max(least)
+    }
 }
 
 /// Unknowns at which an extreme touches, found by updates of which the first was so long.

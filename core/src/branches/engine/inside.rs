@@ -102,7 +102,11 @@ impl Engine {
     ) {
         let mut looks = Vec::new();
         for sought in sought_from(problem, points[1]) {
-            let found = self.dip(problem, newton, points, &mut looks, sought);
+            if sought.is_copy(problem, [points[0], points[1]]) {
+                continue;
+            }
+            let within = Within::First;
+            let found = self.dip_within(problem, newton, points, within, &mut looks, sought);
             let Some(Dip::Before(found)) = found else {
                 continue;
             };
@@ -126,7 +130,7 @@ impl Engine {
         parts: &mut Vec<Seen>,
     ) {
         let mut looks = Vec::new();
-        let way = Some(former.way);
+        let within = Within::Last(former.way);
         let earlier = former.before(&parts[0]);
         let slope = Sought::Test(Test::Slope);
         let sought = of_multipliers(problem, &parts[0]).into_iter();
@@ -135,7 +139,7 @@ impl Engine {
                 continue;
             }
             let points = [&earlier, &parts[0], &parts[parts.len() - 1]];
-            let found = self.dip_behind(problem, newton, points, way, &mut looks, sought);
+            let found = self.dip_within(problem, newton, points, within, &mut looks, sought);
             if let Some(Dip::Last(found)) = found {
                 insert(newton, parts, found);
             }
@@ -192,16 +196,16 @@ impl Engine {
         looks: &mut Vec<Look>,
         sought: Sought,
     ) -> Option<Dip> {
-        self.dip_behind(problem, newton, points, None, looks, sought)
+        self.dip_within(problem, newton, points, Within::Both, looks, sought)
     }
 
-    /// The same; where the first point has other unknowns, the length of the `former` step is known and no orbit of it.
-    fn dip_behind(
+    /// The same in one of them, or both.
+    fn dip_within(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         points: [&Seen; 3],
-        former: Option<f64>,
+        within: Within,
         looks: &mut Vec<Look>,
         sought: Sought,
     ) -> Option<Dip> {
@@ -215,7 +219,12 @@ impl Engine {
         let reference = reference.fold(f64::NEG_INFINITY, f64::max);
         let heights = values.map(|value| sign * value.relative_to(reference));
         let length = |i: usize| distance(newton, &points[i].point, &points[i + 1].point);
-        let lengths = [former.unwrap_or_else(|| length(0)), length(1)];
+        let (steps, first) = match within {
+            Within::Both => (&[1, 0][..], length(0)),
+            Within::First => (&[0][..], length(0)),
+            Within::Last(way) => (&[1][..], way),
+        };
+        let lengths = [first, length(1)];
         let places = [0.0, lengths[0], lengths[0] + lengths[1]];
         let known = [0, 1, 2].map(|i| Height {
             place: places[i],
@@ -225,7 +234,6 @@ impl Engine {
             Sought::Test(test) => noise_of(problem, test, points[1]),
             Sought::Meeting(_) => 0.0,
         };
-        let steps = if former.is_some() { &[1][..] } else { &[1, 0] };
         for &first in steps {
             let descent = Descent {
                 between: [points[first], points[first + 1]],
@@ -459,11 +467,16 @@ impl Sought {
         }
     }
 
+    /// Whether another one tells the same between these points.
+    fn is_copy(self, problem: &dyn BranchProblem, points: [&Seen; 2]) -> bool {
+        matches!(self, Self::Test(test) if is_conjugate(problem, points, test))
+    }
+
     /// Whether the parts of a step show already what it would tell.
     fn is_seen(self, problem: &dyn BranchProblem, parts: &[Seen], earlier: &Seen) -> bool {
         match self {
             Self::Test(test) => {
-                is_hidden(problem, parts, test) || is_conjugate(problem, [earlier, &parts[0]], test)
+                is_hidden(problem, parts, test) || self.is_copy(problem, [earlier, &parts[0]])
             }
             Self::Meeting(_) => {
                 let mut moduli = moduli(problem);
@@ -501,6 +514,15 @@ fn is_conjugate(problem: &dyn BranchProblem, points: [&Seen; 2], test: Test) -> 
         && points
             .iter()
             .all(|seen| seen.values[index] == seen.values[index - 1])
+}
+
+/// In which of two steps an orbit is looked for.
+#[derive(Debug, Clone, Copy)]
+enum Within {
+    Both,
+    First,
+    /// Of the first, whose first point has other unknowns, the length is known and no orbit.
+    Last(f64),
 }
 
 /// Where an orbit of the other sign was found.

@@ -335,8 +335,10 @@ impl Engine {
     /// The walk where it was halted, in other unknowns. What happened in the last step cannot be looked at where its first point has no place in them.
     fn remapped(&mut self, problem: &mut dyn BranchProblem, halted: &Halted) -> Box<Halted> {
         let mut resized = Box::new(halted.clone());
-        // It has no place in other unknowns.
-        self.behind = None;
+        // It has no place in other unknowns, and from the touch before it nothing is known of the way then.
+        if self.behind.take().is_some() {
+            self.crossed = None;
+        }
         let before = halted.previous.as_ref().filter(|_| problem.seeks_touches());
         let gaps = before.and_then(|before| self.gaps_at(problem, before));
         resized.earlier = self.earlier_than(halted);

@@ -101,9 +101,10 @@ pub(in crate::contact_equation) fn event(
             let there = Tests::of(Some(map), at.parameter_slope()).value(test);
             there.abs() / zero.steepness
         });
-        let [from, to] = step.parameters();
-        // Of equations with more nodes it is none, if they do not lead to one within the step.
-        if !crosses && finer.is_some_and(|moved| moved > (to - from).abs()) {
+        let value = at.parameter();
+        let ways = step.parameters().map(|end| (end - value).abs());
+        // Equations with more nodes lead to none between both ends: it is said where that is, and is no event.
+        if !crosses && finer.is_some_and(|moved| moved > ways[0].max(ways[1])) {
             return None;
         }
         event.error = match finer {

@@ -7,8 +7,8 @@ use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::interval::Interval;
 use crate::numeric::linear::Placed;
 
-/// Numbers in tables of all intervals up to which each keeps its own.
-const KEPT: usize = 1 << 20;
+/// Numbers in tables of intervals that keep their own, at most: 16 MB.
+const KEPT: usize = 1 << 21;
 
 /// Room for a pass.
 #[derive(Debug, Default)]
@@ -19,7 +19,7 @@ pub(in crate::contact_equation) struct Room {
     pub(super) by_next: Vec<f64>,
     /// The steady response where an interval begins, with its derivatives.
     pub(super) steady_from: [Vec<f64>; 3],
-    /// Of every interval with forces, or of one at a time where those would be too large; and which of them is that of an interval.
+    /// Of as many intervals with forces as there is room for, and of one at a time of the others; and which of them is that of an interval.
     pub(super) integrals: Vec<Integrals>,
     pub(super) integrals_of: Vec<usize>,
     pub(in crate::contact_equation) targets: Targets,
@@ -108,24 +108,24 @@ impl Room {
 /// Integrals of intervals that have so many nodes and forces at most, and which of them each has.
 fn integrals(skeleton: &Skeleton, [nodes, forces]: [usize; 2]) -> (Vec<Integrals>, Vec<usize>) {
     let order = skeleton.order;
-    let with_forces = |interval: &&Interval| !interval.active.is_empty();
-    let size = |interval: &Interval| {
+    let mut own = Vec::new();
+    let mut kept = 0;
+    let mut places = Vec::with_capacity(skeleton.intervals.len());
+    for interval in &skeleton.intervals {
         let n = interval.nodes.count();
-        order * n * (n + 1)
-    };
-    let all = skeleton.intervals.iter();
-    if all.clone().filter(with_forces).map(size).sum::<usize>() > KEPT {
-        let one = Integrals::new(order, nodes, forces);
-        return (vec![one], vec![0; skeleton.intervals.len()]);
+        let size = order * n * (n + 1);
+        let is_kept = !interval.active.is_empty() && kept + size <= KEPT;
+        places.push(is_kept.then_some(own.len()));
+        if is_kept {
+            kept += size;
+            own.push(Integrals::new(order, n, interval.forces()));
+        }
     }
-    let own = all.clone().filter(with_forces);
-    let own = own.map(|interval| Integrals::new(order, interval.nodes.count(), interval.forces()));
-    let mut next = 0;
-    let places = all.map(|interval| {
-        let place = next;
-        next += usize::from(!interval.active.is_empty());
-        place
-    });
-    let places = places.collect();
-    (own.collect(), places)
+    let shared = own.len();
+    let mut alone = skeleton.intervals.iter().zip(&places);
+    if alone.any(|(interval, place)| place.is_none() && !interval.active.is_empty()) {
+        own.push(Integrals::new(order, nodes, forces));
+    }
+    let places = places.into_iter().map(|place| place.unwrap_or(shared));
+    (own, places.collect())
 }
