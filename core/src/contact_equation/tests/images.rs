@@ -46,15 +46,10 @@ fn positions_are_those_of_the_flow(system: &dyn System, omega: f64, recurrence: 
     equations.compute(&u, false);
     assert!(!equations.failed);
     let motion = Motion::of(&equations);
+    // Of a part of the period in which a stop is reached and left.
+    assert!(motion.intervals() > 2 && equations.skeleton.length < 0.6 * TAU);
     let shooting = FrequencyResponse::of(system).by(Shooting::new());
     let exact = shooting.tolerance(1e-12).orbit(omega).unwrap();
-    assert!(
-        exact
-            .observed
-            .contacts
-            .iter()
-            .all(|contact| contact.fraction > 0.0)
-    );
     let coordinates = exact.orbit.coordinates();
     let mut flow = time::of(system, omega, 1e-12).unwrap();
     let phases: Vec<f64> = (0..60)
