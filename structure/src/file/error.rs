@@ -65,7 +65,7 @@ pub enum FileError {
         source: MarketError,
     },
     /// A file of MATLAB.
-    #[error("{}: files of MATLAB are not read: what `scipy.io.loadmat` reads of it is written as it is taken here by {instead}", .path.display())]
+    #[error("{}: files of MATLAB are not read: what `scipy.io.loadmat`, or `h5py` of version 7.3, reads of it is written as it is taken here by {instead}", .path.display())]
     Matlab {
         /// Its path.
         path: PathBuf,

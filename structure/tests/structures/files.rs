@@ -261,7 +261,7 @@ fn files_of_matlab_are_refused_with_what_to_do() {
         ("K.MAT", b"\0\0\0\0\x01\0\0\0"),
         ("empty.mat", b""),
     ];
-    let matrix = ": files of MATLAB are not read: what `scipy.io.loadmat` reads of it is written as it is taken here by `scipy.io.mmwrite`";
+    let matrix = ": files of MATLAB are not read: what `scipy.io.loadmat`, or `h5py` of version 7.3, reads of it is written as it is taken here by `scipy.io.mmwrite`";
     let array = matrix.replace("scipy.io.mmwrite", "numpy.save");
     for (name, bytes) in files {
         assert_eq!(said(name, bytes, "stiffness.mtx", "FILE"), matrix);

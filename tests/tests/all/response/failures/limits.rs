@@ -175,7 +175,7 @@ hertzian::oscillator! {
 }
 
 /// So slow a motion is the load's against friction alone: `f tanh(x'/v) = drive cos(omega t)`, with the spring in quadrature to it and a three
-/// hundredth as large. Its multipliers are `exp(6000)`: a method follows this orbit in both directions, or says that it finds none.
+/// hundredth as large. Its multipliers are `exp(6000)`: a method follows this orbit to the end of the range, or says that it finds none; two runs at least follow it.
 #[test]
 fn friction_that_drives() {
     let system = Driving::default();
