@@ -62,10 +62,25 @@ pub(super) fn on_the_way(
     passage: Passage,
     options: NewtonOptions,
 ) -> Option<Reached> {
-    // As near as rounding allows, or else as near as touches.
-    [ROUNDED * AIM, TOUCHES]
-        .into_iter()
-        .find_map(|aim| on_the_way_to(problem, newton, step, passage, aim, options))
+    // As near as rounding allows, or else as near as touches, or as orbits are known.
+    let searches = [(ROUNDED * AIM, false), (TOUCHES, false), (TOUCHES, true)];
+    searches.into_iter().find_map(|(aim, jumps)| {
+        on_the_way_to(
+            problem,
+            newton,
+            step,
+            passage,
+            Sought { aim, jumps },
+            options,
+        )
+    })
+}
+
+/// How near an extreme is to come to its level, and whether it may jump across it by little.
+#[derive(Debug, Clone, Copy)]
+struct Sought {
+    aim: f64,
+    jumps: bool,
 }
 
 /// The same, where it comes that near to its level.
@@ -74,7 +89,7 @@ fn on_the_way_to(
     newton: &mut Newton,
     step: Step<'_>,
     Passage { before, next }: Passage,
-    aim: f64,
+    Sought { aim, jumps }: Sought,
     options: NewtonOptions,
 ) -> Option<Reached> {
     let [from, to] = step.parameters();
@@ -97,7 +112,8 @@ fn on_the_way_to(
     let Located { test, jump, .. } = root.located;
     let rate = ((to - from) / (next.above - before.above)).abs();
     // Of orbits that are known less well extremes may jump as little, where equations with more nodes have no jump.
-    let jumps_little = extreme.bend != Bend::Corner
+    let jumps_little = jumps
+        && extreme.bend != Bend::Corner
         && jump > 0.0
         && jump <= SMALL * before.above.abs().min(next.above.abs());
     let left = if jumps_little { jump } else { test.abs() };

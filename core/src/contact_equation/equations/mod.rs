@@ -96,6 +96,8 @@ pub(super) struct Equations {
     /// What is varied where `values` are, and where they were made.
     at: f64,
     pub(super) made: f64,
+    /// The frequency there, by which velocities count along a branch.
+    base: f64,
     pub(super) skeleton: Skeleton,
     /// Positions and velocities that the unknowns count from.
     pub(super) reference: Vec<f64>,
@@ -144,6 +146,7 @@ impl Equations {
         let configurations = setting.configurations(&values, &skeleton)?;
         let mut equations = Self {
             basis: paired::basis(&values.linear),
+            base: values.base,
             values,
             configurations,
             at: value,
@@ -533,9 +536,9 @@ impl Problem for Equations {
 
     fn weights(&self, weights: &mut [f64]) {
         let order = self.skeleton.order;
-        for (state, weight) in weights[..order].iter_mut().enumerate() {
-            *weight = 1.0 / (self.unit(state) * self.unit(state));
-        }
+        // Of the equations and not of the orbit that they were asked for last: a walk that is resumed has the same.
+        weights[..order / 2].fill(1.0);
+        weights[order / 2..order].fill(1.0 / (self.base * self.base));
         let whole = self.size / TAU;
         let switches = self.skeleton.switches.len();
         weights[order..order + switches].fill(whole * whole);
