@@ -9,8 +9,6 @@
 //! images are read at once. A signal of an image that is another signal of the part before, as the force of the ball of a bearing that has come to the place of the one
 //! before it, is looked at there alone. Signals of images are called channels.
 
-pub(crate) mod at_nodes;
-
 use std::f64::consts::TAU;
 
 use super::problem::ShootingProblem;
@@ -192,11 +190,6 @@ impl<'s> Reader<'s> {
 
     /// Includes a stretch.
     pub(crate) fn include(&mut self, stretch: &dyn Stretch) {
-        self.include_or(stretch, |_| false);
-    }
-
-    /// Includes a stretch, unless something else has.
-    fn include_or(&mut self, stretch: &dyn Stretch, otherwise: impl FnOnce(&mut Self) -> bool) {
         let (from, to) = stretch.phases();
         let passed = self.passed.unwrap_or(from);
         self.passed = Some(passed);
@@ -204,15 +197,6 @@ impl<'s> Reader<'s> {
             return;
         }
         self.place(stretch, [from, to]);
-        if !otherwise(self) {
-            self.divide(stretch);
-        }
-        self.passed = Some(passed + (to - from));
-    }
-
-    /// Includes a stretch part by part.
-    fn divide(&mut self, stretch: &dyn Stretch) {
-        let (from, to) = stretch.phases();
         let angle = self.harmonics as f64 * (to - from) / self.period as f64;
         let parts = (angle / ANGLE).ceil().max(1.0) as usize;
         for part in 0..parts {
@@ -220,6 +204,7 @@ impl<'s> Reader<'s> {
             let whole = self.nodes(stretch, ends);
             self.part(stretch, ends, &whole, f64::INFINITY, DEEPEST);
         }
+        self.passed = Some(passed + (to - from));
     }
 
     /// What was found of every signal.
@@ -311,13 +296,8 @@ impl<'s> Reader<'s> {
 
     /// Writes all channels at a phase.
     fn write(&mut self, stretch: &dyn Stretch, phase: f64, out: &mut [f64]) {
-        stretch.state(phase, &mut self.state);
-        self.write_here(phase, out);
-    }
-
-    /// The same in the state that was written last.
-    fn write_here(&mut self, phase: f64, out: &mut [f64]) {
         let count = self.found.len().max(1);
+        stretch.state(phase, &mut self.state);
         for (image, out) in self.images.iter().zip(out.chunks_exact_mut(count)) {
             if !image.chosen.signals().is_empty() {
                 let state = image.state(&self.state, &mut self.image);
@@ -409,12 +389,7 @@ impl<'s> Reader<'s> {
             }
         }
         let ends = [from, to].map(|s| place(s, [begin, end]));
-        self.take_extremes(stretch, ends, |channel, samples| {
-            for nodes in halves {
-                let phases = nodes.phases.iter().enumerate();
-                samples.extend(phases.map(|(index, phase)| [*phase, nodes.at(index, channel)]));
-            }
-        });
+        self.take_extremes(stretch, ends, halves);
     }
 
     /// The largest difference of integrals by a rule and by the rule on halves, in parts of the largest value.
@@ -437,13 +412,7 @@ impl<'s> Reader<'s> {
         apart
     }
 
-    /// Takes extremes beside samples of every channel between two ends.
-    fn take_extremes(
-        &mut self,
-        stretch: &dyn Stretch,
-        ends: [f64; 2],
-        sample: impl Fn(usize, &mut Vec<[f64; 2]>),
-    ) {
+    fn take_extremes(&mut self, stretch: &dyn Stretch, ends: [f64; 2], halves: &[Nodes; 2]) {
         let count = self.found.len();
         let channels = count * self.images.len();
         let mut at_ends = [vec![0.0; channels], vec![0.0; channels]];
@@ -451,16 +420,20 @@ impl<'s> Reader<'s> {
             self.write(stretch, phase, values);
         }
         let mut row = vec![0.0; count];
-        let mut samples = Vec::with_capacity(2 * NODES + 2);
         let sharers = std::mem::take(&mut self.sharers);
         for (channel, sharers) in sharers.iter().enumerate() {
             if sharers.is_empty() {
                 continue;
             }
-            samples.clear();
-            samples.push([ends[0], at_ends[0][channel]]);
-            sample(channel, &mut samples);
-            samples.push([ends[1], at_ends[1][channel]]);
+            let mut samples = [[0.0; 2]; 2 * NODES + 2];
+            samples[0] = [ends[0], at_ends[0][channel]];
+            samples[2 * NODES + 1] = [ends[1], at_ends[1][channel]];
+            for (half, nodes) in halves.iter().enumerate() {
+                for index in 0..NODES {
+                    samples[1 + half * NODES + index] =
+                        [nodes.phases[index], nodes.at(index, channel)];
+                }
+            }
             self.include_in(sharers, samples.iter().map(|[_, value]| *value));
             for sign in [1.0, -1.0] {
                 let known = sharers.iter().map(|signal| {

@@ -23,8 +23,6 @@
 use std::ops::Range;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use multiversion::multiversion;
-
 use super::grading::{Grading, STEEPEST, power_with};
 use super::partway::Partway;
 use crate::numeric::fourier::gauss;
@@ -41,10 +39,8 @@ const _: () = {
 };
 /// Points of the rules between two targets, and up to which angle of a kernel on the way each serves: polynomials through nodes turn by half of a period
 /// there, and with `n` points what is left of a wave that turns by `T` is as large as the Bessel function `J_2n(T / 2)`.
-const POINTS: [usize; RULES] = [10, 12, 14, 16, 18, 24, 32, 48];
-const TURNS: [f64; RULES] = [2.5, 5.5, 9.5, 13.0, 18.0, 30.0, 56.0, 90.0];
-/// How many rules there are.
-pub(in crate::contact_equation) const RULES: usize = 8;
+const POINTS: [usize; 6] = [12, 16, 20, 24, 32, 48];
+const TURNS: [f64; 6] = [3.0, 8.0, 13.0, 18.0, 30.0, 90.0];
 /// The largest power of which polynomials stand for the force itself.
 const PLAIN_POWER: usize = 2;
 /// Points of the rule for (2).
@@ -81,9 +77,7 @@ pub(in crate::contact_equation) struct Nodes {
     pub(in crate::contact_equation) once: Vec<f64>,
     pub(in crate::contact_equation) twice: Vec<f64>,
     /// Rules between successive targets, coarser ones first.
-    between: [OnceLock<Between>; RULES],
-    /// The ways between targets.
-    ways: Vec<f64>,
+    between: [OnceLock<Between>; POINTS.len()],
     /// By how much a kernel that turns once over the whole stretch may turn on each way between two targets, and the most of these.
     reaches: Vec<f64>,
     reach: f64,
@@ -97,7 +91,7 @@ pub(in crate::contact_equation) struct Nodes {
 #[derive(Debug)]
 pub(in crate::contact_equation) struct Between {
     /// Where the points of each way begin, and where all end.
-    pub(in crate::contact_equation) starts: Vec<usize>,
+    starts: Vec<usize>,
     /// What is left to the end of the way, for every point of it.
     pub(in crate::contact_equation) left: Vec<f64>,
     /// Weight times every polynomial there.
@@ -138,12 +132,6 @@ impl Nodes {
         self.y.len()
     }
 
-    /// What the nodes count in an integral over the stretch: as Gauss rules in `y` have it.
-    pub(in crate::contact_equation) fn weights(&self) -> &[f64] {
-        let n = self.count();
-        &self.once[n * n..]
-    }
-
     fn new(count: usize, grading: [usize; 2]) -> Self {
         let rule = gauss::rule(count);
         let y: Vec<f64> = rule.nodes.iter().map(|s| 2.0 * s - 1.0).collect();
@@ -180,7 +168,6 @@ impl Nodes {
             once: Vec::new(),
             twice: Vec::new(),
             between: Default::default(),
-            ways: Vec::new(),
             reaches: Vec::new(),
             reach: 0.0,
             widest: 0.0,
@@ -194,10 +181,8 @@ impl Nodes {
     /// Fills (2) by sums over the ways between targets.
     fn integrate(&mut self) {
         let n = self.count();
-        self.ways = vec![self.targets[0]];
-        let pairs = self.targets.windows(2);
-        self.ways.extend(pairs.map(|pair| pair[1] - pair[0]));
-        let ways = &self.ways;
+        let mut ways = vec![self.targets[0]];
+        ways.extend(self.targets.windows(2).map(|pair| pair[1] - pair[0]));
         self.widest = ways.iter().copied().fold(0.0, f64::max);
         let ends = [-1.0].iter().chain(&self.y);
         let pairs = ends.zip(self.y.iter().chain(&[1.0]));
@@ -261,20 +246,11 @@ impl Nodes {
         rule
     }
 
-    /// The ways between targets, as parts of the stretch.
-    pub(in crate::contact_equation) fn ways(&self) -> &[f64] {
-        &self.ways
-    }
-
-    /// The place of the rule that serves a kernel which turns by this angle, or decays by so many powers of `e`, over a whole stretch.
-    pub(in crate::contact_equation) fn place_for(&self, fast: f64) -> usize {
-        place_for(fast * self.reach)
-    }
-
-    /// The rule in this place.
-    pub(in crate::contact_equation) fn rule(&self, place: usize) -> &Between {
-        self.between[place].get_or_init(|| {
-            let part = TURNS[place] / self.reach;
+    /// The rule that serves a kernel which turns by this angle, or decays by so many powers of `e`, over a whole stretch.
+    pub(in crate::contact_equation) fn between(&self, fast: f64) -> &Between {
+        let index = place_for(fast * self.reach);
+        self.between[index].get_or_init(|| {
+            let part = TURNS[index] / self.reach;
             self.rule_between(|way| POINTS[place_for(part * self.reaches[way])])
         })
     }
@@ -301,7 +277,10 @@ impl Nodes {
         let sign = if n.is_multiple_of(2) { -1.0 } else { 1.0 };
         // P_n(-1) = (-1)^n, and the derivative of y^2 - 1 is -2 there.
         let mut sum = 1.0 / (2.0 * (y + 1.0));
-        sum += weigh(y, &self.y, &self.inner, weights);
+        for ((weight, node), inner) in weights.iter_mut().zip(&self.y).zip(&self.inner) {
+            *weight = inner / (y - node);
+            sum += *weight;
+        }
         weights[n] = sign / (2.0 * (y - 1.0));
         sum += weights[n];
         let per = 1.0 / sum;
@@ -328,8 +307,8 @@ impl Nodes {
         let known = rule.done.map_or(0.0, |target| self.targets[target]);
         rule.left = psi - known;
         rule.points.clear();
+        rule.values.clear();
         if done > n || psi <= known {
-            rule.values.clear();
             return;
         }
         let from = rule.done.map_or(-1.0, |target| self.y[target]);
@@ -341,10 +320,8 @@ impl Nodes {
         for ((s, w), values) in gauss.nodes.iter().zip(&gauss.weights).zip(rows) {
             let y = from + length * s;
             self.polynomials_at(y, values);
-            if self.steep {
-                for (value, slope) in values.iter_mut().zip(&self.slopes) {
-                    *value *= slope;
-                }
+            for (value, slope) in values.iter_mut().zip(&self.slopes) {
+                *value *= slope;
             }
             let weight = w * length * self.left_of_slope(y);
             rule.points.push([psi - self.map.psi(y), weight]);
@@ -446,33 +423,20 @@ impl Nodes {
 
     /// Writes every polynomial at a `y`, and beyond the ends too.
     fn polynomials_at(&self, y: f64, values: &mut [f64]) {
-        let per = 1.0 / weigh(y, &self.y, &self.barycentric, values);
-        if per == 0.0 || per.is_nan() {
-            // At a node, or so near that its weight is no number.
-            let near = |node: &f64| (*node - y).abs() <= f64::MIN_POSITIVE;
-            for (value, node) in values.iter_mut().zip(&self.y) {
-                *value = f64::from(u8::from(near(node)));
-            }
+        if let Some(node) = self.y.iter().position(|node| *node == y) {
+            values.fill(0.0);
+            values[node] = 1.0;
             return;
         }
+        let mut sum = 0.0;
+        for ((value, node), weight) in values.iter_mut().zip(&self.y).zip(&self.barycentric) {
+            *value = weight / (y - node);
+            sum += *value;
+        }
         for value in values {
-            *value *= per;
+            *value /= sum;
         }
     }
-}
-
-/// Writes weights by the ways from their nodes, and returns the sum of these. Nodes are a multiple of four.
-#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn weigh(y: f64, nodes: &[f64], weights: &[f64], to: &mut [f64]) -> f64 {
-    let (nodes, weights) = (nodes.as_chunks::<4>().0, weights.as_chunks::<4>().0);
-    let mut sums = [0.0; 4];
-    for ((to, node), weight) in to.as_chunks_mut::<4>().0.iter_mut().zip(nodes).zip(weights) {
-        for l in 0..4 {
-            to[l] = weight[l] / (y - node[l]);
-            sums[l] += to[l];
-        }
-    }
-    (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
 /// The place of the rule that serves a kernel which turns by this angle, or decays by so many powers of `e`, on a way.

@@ -320,7 +320,6 @@ fn part([from, to]: [f64; 2], phase: f64) -> f64 {
 }
 
 /// One interval as a stretch of motion.
-#[derive(Clone, Copy)]
 pub(in crate::contact_equation) struct Within<'m, 'e> {
     pub(in crate::contact_equation) motion: &'m Motion<'e>,
     pub(in crate::contact_equation) interval: usize,

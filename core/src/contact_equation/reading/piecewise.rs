@@ -6,7 +6,7 @@
 //! ```
 //!
 //! so that an output is one there, is nothing but a number where no contact of it acts, and is read as sums of coordinates are. On other intervals outputs are read
-//! at the nodes of their forces, or instant by instant, by rules of quadrature.
+//! instant by instant, by rules of quadrature.
 //!
 //! Source: Shaw and Holmes (1983), A periodically forced piecewise linear oscillator, Journal of Sound and Vibration 90(1) (the force of an elastic stop from the motion,
 //! in closed form on each side of it).
@@ -14,7 +14,7 @@
 use std::f64::consts::TAU;
 
 use super::plain_outputs::{self, Plain, Sum, finish};
-use super::stretch::{Read, ReadAtNodes};
+use super::stretch::Read;
 use crate::branches::observed::Motion as Extent;
 use crate::branches::recurrence::Recurrence;
 use crate::contact_equation::linear_part::configuration::Affine;
@@ -239,14 +239,10 @@ impl Piecewise<'_, '_> {
         let mut reader = Reader::new(signals, self.recurrence(), coordinates, 0);
         let all = self.motion.sampled().iter().map(Sampled::interval);
         for interval in all.filter(|interval| intervals.contains(interval)) {
-            let within = Within {
+            reader.include(&Read::new(Within {
                 motion: self.motion,
                 interval,
-            };
-            match ReadAtNodes::new(within) {
-                Some(read) => reader.include_at_nodes(&read),
-                None => reader.include(&Read::new(within)),
-            }
+            }));
         }
         reader.motions()
     }

@@ -79,27 +79,6 @@ fn stated_errors_of_sums_hold() {
     }
 }
 
-/// A force at nodes, and sums that are no sums of exponentials: extremes, mean and root mean square as they are read off the orbit by shooting.
-#[test]
-fn outputs_at_nodes_are_those_of_rules() {
-    for omega in [1.08, 1.12, 1.17] {
-        let request = FrequencyResponse::of(&Measured {});
-        let exact = request.by(Shooting::new()).tolerance(1e-12);
-        let exact = exact.orbit(omega).unwrap();
-        let request = FrequencyResponse::of(&Measured {}).by(ContactEquation::new());
-        let own = request.tolerance(1e-10).near_orbit(&exact.orbit);
-        let own = own.orbit(omega).unwrap();
-        assert!(exact.observed.outputs[1].maximum > 0.0);
-        for (own, exact) in own.observed.outputs.iter().zip(&exact.observed.outputs) {
-            let numbers = |of: &Motion| [of.minimum, of.maximum, of.mean.unwrap(), of.rms.unwrap()];
-            for (own, exact_value) in numbers(own).into_iter().zip(numbers(exact)) {
-                let apart = (own - exact_value).abs() / exact.peak_to_peak();
-                assert!(apart < 1e-9, "{omega}: {own} {exact_value}");
-            }
-        }
-    }
-}
-
 crate::oscillator! {
     /// A damped elastic stop on each side of the first of two masses: orbits come back with signs changed after half of the period.
     Between(x, y) {
