@@ -244,7 +244,7 @@ impl Behind<'_> {
         let sign = self.begin.value(test).mantissa.signum();
         let above = values.map(|value| sign * value.relative_to(reference));
         let above: Vec<f64> = above.collect();
-        let is_low = |above: &f64| !(*above > noise);
+        let is_low = |above: &f64| above.is_nan() || *above <= noise;
         let first = above.iter().rposition(is_low).map_or(0, |place| place + 1);
         let known = self.known[first..].iter().zip(&above[first..]);
         let heights = known.map(|((place, _), above)| {

@@ -171,7 +171,7 @@ impl Engine {
             return vec![begin, next];
         }
         let search = self.search(tried, before, *extreme, *length);
-        self.beyond_corner(search, corner, &[next.clone()], false)
+        self.beyond_corner(search, corner, std::slice::from_ref(next), false)
     }
 
     /// What happens on the way from the last point along others, none of which is kept as a point.
