@@ -1,7 +1,5 @@
 //! Extremes of gaps in motions that grow beyond all bounds, as those of equations that are not solved may: they are found, or not, by a search that ends.
 
-use std::f64::consts::PI;
-
 use super::first;
 use crate::contact_equation::orbit::motion::Motion;
 
@@ -27,26 +25,6 @@ fn extremes(damping: f64) -> Vec<f64> {
     equations.compute(&u, false);
     let found = &Motion::of(&equations).gap_extremes()[0];
     found.iter().map(|extreme| extreme.phase).collect()
-}
-
-/// Once the fast mode is all that there is, a gap with the exponents `a +- i b` has an extreme every `pi / b`. The stop changes `b` by less than a
-/// thousandth; where it begins to act the slow mass takes two thousandths of the gap, which moves an extreme by less than a hundredth of that.
-#[test]
-fn extremes_of_a_mode_that_rings_up_are_half_of_its_period_apart() {
-    for damping in [-20.0, -100.0, -200.0_f64] {
-        let phases = extremes(damping);
-        let apart = PI * OMEGA / (1e6 - 0.25 * damping * damping).sqrt();
-        let late: Vec<f64> = phases
-            .into_iter()
-            .filter(|phase| (6.0..9.0).contains(phase))
-            .collect();
-        let expected = 3.0 / apart;
-        assert!((late.len() as f64 - expected).abs() < 2.0, "{}", late.len());
-        for pair in late.windows(2) {
-            let part = (pair[1] - pair[0]) / apart;
-            assert!((part - 1.0).abs() < 1e-2, "{damping}: {pair:?} {part}");
-        }
-    }
 }
 
 /// Values and rates leave the range of numbers, and their bounds before them.
