@@ -273,9 +273,9 @@ pub(crate) trait BranchProblem {
         false
     }
 
-    /// Whether orbits in a narrow place of a law are known as well as others. Of few harmonics there they are not, and what happens between them may be
-    /// theirs alone: they are not made points of the branch.
-    fn resolves_narrow(&self) -> bool {
+    /// Whether orbits in a narrow place of a law, or beside a touch where the force jumps, are known as well as others. Of few harmonics there they are
+    /// not, and what happens between them may be theirs alone: they are not made points of the branch, and no more of them are looked for.
+    fn resolves_sharp(&self) -> bool {
         true
     }
 

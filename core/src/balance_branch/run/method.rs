@@ -172,7 +172,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         extreme::corners(self.run.context.system.as_ref())
     }
 
-    fn resolves_narrow(&self) -> bool {
+    fn resolves_sharp(&self) -> bool {
         false
     }
 

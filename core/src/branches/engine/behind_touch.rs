@@ -127,6 +127,11 @@ impl Engine {
             options: self.options.newton,
         };
         let contraction = newton.contraction();
+        if crossed.jumps && problem.resolves_sharp() {
+            for part in PLACES {
+                behind.add(problem, newton, middle + part * (1.0 - middle));
+            }
+        }
         behind.seek_all(problem, newton);
         newton.remember_contraction(contraction);
         behind.found()

@@ -28,6 +28,9 @@ use crate::event::EventKind;
 const PART: f64 = 0.1;
 /// None is nearer to the touch than this, as a part of the height of the orbit where the branch begins behind it.
 const CLOSEST: f64 = 1e-3;
+/// No part of the way, in the root of the height, is longer than this part of all, if so many more orbits do.
+const WIDEST: f64 = 0.3;
+const FILLED: usize = 8;
 /// Orbits that are looked for of one test function, at most, and until they come so near to each other, as a part of the way.
 const LOOKS: usize = 8;
 const CLOSE: f64 = 1e-4;
@@ -92,6 +95,9 @@ impl Engine {
                 beyond.add_at(height);
                 height *= PART;
             }
+        }
+        if beyond.problem().resolves_sharp() {
+            beyond.fill();
         }
         beyond.seek_all();
         beyond.seen(self.falls)
@@ -165,6 +171,26 @@ impl Beyond<'_, '_> {
             self.keep(beside);
         }
         crosses && along
+    }
+
+    /// Adds orbits in the middle of long parts of the way: a function that passes zero three times in one of them shows one change of its sign.
+    fn fill(&mut self) {
+        let ends = [0, self.known.len() - 1].map(|end| self.known[end].place);
+        let longest = WIDEST * (ends[1] - ends[0]);
+        let mut shut: Vec<f64> = Vec::new();
+        for _ in 0..FILLED {
+            let mut parts = self
+                .known
+                .windows(2)
+                .map(|pair| [pair[0].place, pair[1].place]);
+            let long = parts.find(|[from, to]| to - from > longest && !shut.contains(from));
+            let Some([from, to]) = long else {
+                break;
+            };
+            if !self.add_near(0.5 * (from + to)) {
+                shut.push(from);
+            }
+        }
     }
 
     /// Adds orbits where a test function has another sign than both beside them, if there may be one.

@@ -78,7 +78,7 @@ impl Engine {
         problem: &mut dyn BranchProblem,
         next: &CurvePoint,
     ) -> bool {
-        if !problem.resolves_narrow() {
+        if !problem.resolves_sharp() {
             return false;
         }
         let last = self.seen.last().map(|seen| seen.point.clone());
