@@ -7,7 +7,7 @@
 use hertzian::{Branch, ContactEquation, EventKind, FrequencyResponse, Shooting, System};
 
 use crate::bifurcations::limbs::agrees;
-use crate::bifurcations::preloads::{Masses, assert_places};
+use crate::bifurcations::preloads::{Masses, Preloads, assert_places};
 
 hertzian::oscillator! {
     /// A stop whose dashpot does not pull.
@@ -88,6 +88,40 @@ fn a_fold_on_the_way_to_a_corner_hides_no_bifurcation() {
         let expected = [1.426_397_913_841_016, 1.429_271_370_006_923];
         let kind = EventKind::NeimarkSacker;
         assert_places(&branch, kind, [1.42, 1.44], &expected, 5e-11);
+    }
+}
+
+/// Downwards by shooting three doublings are in one long part of the way beside a corner, which shows one change of the sign.
+#[test]
+fn three_doublings_on_the_way_to_a_corner_are_found() {
+    let system = &Masses {
+        drive: 0.1295,
+        preload: 0.0581,
+    };
+    agrees(system, [0.5, 2.2]);
+    for branch in branches(system, [0.5, 2.2]) {
+        let expected = [0.986_997_247_040_814, 0.988_491_046_265_856];
+        let kind = EventKind::PeriodDoubling;
+        assert_places(&branch, kind, [0.9865, 0.99], &expected, 1e-12);
+    }
+}
+
+/// The same beside two corners downwards by the contact equation.
+#[test]
+fn three_doublings_on_the_way_from_a_corner_are_found() {
+    let system = &Preloads {
+        drive: 0.8383,
+        p: 0.4284,
+    };
+    agrees(system, [0.4, 2.2]);
+    for branch in branches(system, [0.4, 2.2]) {
+        let kind = EventKind::PeriodDoubling;
+        for (window, expected) in [
+            ([0.4096, 0.4099], 0.409_781_918_560_032),
+            ([0.4762, 0.4763], 0.476_264_255_245_197),
+        ] {
+            assert_places(&branch, kind, window, &[expected], 1e-12);
+        }
     }
 }
 
