@@ -164,7 +164,6 @@ impl Case {
     fn verdict(&mut self, name: &str, truth: &Truth, stability: &Stability) {
         let exact = truth.multipliers[0].norm();
         let unsure = truth.multiplier_error;
-        let error = hertzian_tests::distance(&stability.multipliers, &truth.multipliers);
         let margin = match stability.verdict {
             Verdict::Stable => exact - 1.0,
             Verdict::Unstable => 1.0 - exact,
@@ -173,6 +172,7 @@ impl Case {
                 return;
             }
         };
+        let error = hertzian_tests::distance(&stability.multipliers, &truth.multipliers);
         let stated = stability.error;
         if margin > unsure {
             let largest = stability.multipliers[0].norm();
