@@ -40,7 +40,6 @@ pub(super) mod pass;
 pub(super) mod pass_results;
 pub(super) mod setting;
 mod sink;
-mod tables;
 mod targets;
 mod workspace;
 
@@ -248,7 +247,6 @@ impl Equations {
                 return false;
             };
             (self.values, self.configurations) = (values, configurations);
-            self.room.forget();
             self.basis = paired::basis(&self.values.linear);
         }
         self.at = value;

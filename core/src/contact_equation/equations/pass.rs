@@ -208,9 +208,8 @@ impl Pass<'_> {
         let active = &stretch.interval.active[..];
         let (loaded, derivatives) = (self.loaded(stretch), self.derivatives());
         let room = &mut *self.room;
-        let place = room.integrals_of[stretch.index];
         if !active.is_empty() {
-            room.integrals[place].fill(&loaded);
+            room.integrals.fill(&loaded);
         }
         let [_, by_phase, by_base] = &room.steady_from;
         let whole = [1.0];
@@ -225,7 +224,7 @@ impl Pass<'_> {
             },
             free: &passed.free,
             begun: [by_phase, by_base],
-            integrals: (!active.is_empty()).then(|| &room.integrals[place]),
+            integrals: (!active.is_empty()).then_some(&room.integrals),
             omega: self.omega,
             derivatives,
         };
@@ -236,7 +235,7 @@ impl Pass<'_> {
             passed.states.extend_from_slice(&self.room.y);
             return;
         }
-        self.pass_by(stretch, targets, passed);
+        self.pass_by(targets, !active.is_empty(), passed);
         for (place, active) in active.iter().enumerate() {
             self.outputs(stretch, place, active);
             self.law(stretch, place, active);
@@ -251,7 +250,6 @@ impl Pass<'_> {
         Self: 'l,
     {
         Loaded {
-            interval: stretch.index,
             values: self.values,
             nodes: stretch.interval.nodes,
             active: &stretch.interval.active,
@@ -263,20 +261,16 @@ impl Pass<'_> {
     }
 
     /// Leaves the states at the targets, and what forces did to them, for whoever looks at the motion.
-    fn pass_by(&self, stretch: &Stretch<'_>, targets: usize, passed: &mut Passed) {
+    fn pass_by(&self, targets: usize, forced: bool, passed: &mut Passed) {
         let order = self.skeleton.order;
-        let place = self.room.integrals_of[stretch.index];
-        let forced = !stretch.interval.active.is_empty();
         if forced {
-            passed
-                .load
-                .extend_from_slice(self.room.integrals[place].load());
+            passed.load.extend_from_slice(self.room.integrals.load());
         }
         for target in 0..targets {
             let states = (0..order).map(|state| self.room.targets.state(target, state));
             passed.states.extend(states);
             if forced {
-                let integrals = &self.room.integrals[place];
+                let integrals = &self.room.integrals;
                 let of = (0..order).map(|state| integrals.forced(0, state)[target]);
                 passed.forced.extend(of);
             }
@@ -394,13 +388,8 @@ impl Pass<'_> {
         if self.omega.is_some() {
             direct[direct.len() - 1] += slopes[2];
         }
-        room.integrals[room.integrals_of[stretch.index]].add_own(
-            &loaded,
-            0..order / 2,
-            [output, turned],
-            node,
-            own,
-        );
+        room.integrals
+            .add_own(&loaded, 0..order / 2, [output, turned], node, own);
         own[local] += 1.0;
     }
 
@@ -433,13 +422,8 @@ impl Pass<'_> {
                     unit_row[place.clone()].copy_from_slice(&[0.0; 2]);
                     unit_row[state] = 1.0;
                     turned[place].copy_from_slice(&d[i]);
-                    room.integrals[room.integrals_of[stretch.index]].add_own(
-                        &loaded,
-                        r..r + 1,
-                        [unit_row, turned],
-                        target,
-                        driven,
-                    );
+                    room.integrals
+                        .add_own(&loaded, r..r + 1, [unit_row, turned], target, driven);
                 }
             }
         }
