@@ -4,7 +4,8 @@
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-use super::branch::method::{ContactBranch, REFUSALS, RELOCATED};
+use super::branch::accept_orbit::{REFUSALS, RELOCATED};
+use super::branch::method::ContactBranch;
 use super::branch::resume_state::Rest;
 use super::equations::Equations;
 use super::equations::setting::Frame;

@@ -1,7 +1,10 @@
 //! Where a run by the contact equation is, as data: what is left of it follows from that.
 
+use super::accept_orbit::{REFUSALS, SHORTENED};
 use super::first_orbit::Remembered;
-use super::method::{ContactBranch, DISPLACED, HELD, Last, REFUSALS, SHORTENED};
+use super::method::ContactBranch;
+use super::prepare_equations::{DISPLACED, HELD};
+use super::test_values::Last;
 use crate::branches::branch::Branch;
 use crate::branches::engine::Walk;
 use crate::contact_equation::equations::Equations;
