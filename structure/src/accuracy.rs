@@ -15,7 +15,8 @@ use hertzian::observe::Measure;
 use hertzian::{Branch, Cancel, Point};
 
 use crate::at_orbit::AtOrbit;
-use crate::description::{OutputKind, SparseStructure};
+use crate::description::output::OutputKind;
+use crate::description::structure::SparseStructure;
 use crate::feedback::{Changed, Read};
 use crate::multipliers::ReducedStability;
 use crate::reduced::{Reduced, ReducedError};

@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::description::SparseContact;
+use crate::description::contact::SparseContact;
 use crate::gaps::TIMES;
 
 /// How a weight changes over the period of an orbit.

@@ -5,7 +5,9 @@ use hertzian::structure::Value;
 use hertzian::{Branch, Cancel, Point};
 
 use crate::arms::Arm;
-use crate::description::{LoadKind, OutputKind, SparseStructure};
+use crate::description::load::LoadKind;
+use crate::description::output::OutputKind;
+use crate::description::structure::SparseStructure;
 use crate::doubt::{self, Doubt};
 use crate::feedback::Feedback;
 use crate::gaps::{self, Gap};

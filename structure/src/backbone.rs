@@ -22,7 +22,8 @@
 
 use hertzian::{Branch, Cancel, Point};
 
-use crate::description::{LoadKind, SparseStructure};
+use crate::description::load::LoadKind;
+use crate::description::structure::SparseStructure;
 use crate::reduced::{Reduced, ReducedError};
 
 /// A free oscillation: its frequency, its action, and harmonics of forces by the places of what is driven.

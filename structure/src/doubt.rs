@@ -16,7 +16,8 @@
 use hertzian::Complex;
 use hertzian::structure::DMatrix;
 
-use crate::description::{Damping, SparseStructure};
+use crate::description::damping::Damping;
+use crate::description::structure::SparseStructure;
 use crate::reduced::Reduced;
 
 /// Harmonics up to this one know that vectors are coupled by their damping.

@@ -61,10 +61,12 @@ mod reduced;
 mod reduction;
 
 pub use accuracy::{Effects, EffectsAt, OutputError};
-pub use description::{
-    Damping, Direction, Gyroscopic, Load, LoadKind, OutputKind, Ratios, SparseContact,
-    SparseStructure,
-};
+pub use description::contact::SparseContact;
+pub use description::damping::{Damping, Gyroscopic, Ratios};
+pub use description::direction::Direction;
+pub use description::load::{Load, LoadKind};
+pub use description::output::OutputKind;
+pub use description::structure::SparseStructure;
 pub use error::StructureError;
 pub use matrix::{MatrixError, SparseMatrix};
 pub use multipliers::ReducedStability;

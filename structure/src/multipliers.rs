@@ -14,7 +14,8 @@ use std::f64::consts::TAU;
 use hertzian::{Branch, Cancel, Complex, Point, Stability, Verdict};
 
 use crate::at_orbit::AtOrbit;
-use crate::description::{Damping, SparseStructure};
+use crate::description::damping::Damping;
+use crate::description::structure::SparseStructure;
 use crate::doubt;
 use crate::exponent::{self, Change, Contacts};
 use crate::floquet::{Mode, Propagation};

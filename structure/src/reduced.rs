@@ -7,7 +7,10 @@ use hertzian::Error;
 use hertzian::structure::{Contact, DMatrix, Structure, Value};
 use serde::{Deserialize, Serialize};
 
-use crate::description::{Damping, LoadKind, OutputKind, SparseStructure};
+use crate::description::damping::Damping;
+use crate::description::load::LoadKind;
+use crate::description::output::OutputKind;
+use crate::description::structure::SparseStructure;
 use crate::doubt::Doubt;
 use crate::gaps::TIMES;
 

@@ -64,7 +64,7 @@ use std::path::{Path, PathBuf};
 
 pub use error::{FileError, FileFault};
 
-use crate::description::SparseStructure;
+use crate::description::structure::SparseStructure;
 use crate::matrix::SparseMatrix;
 use crate::{market, npy};
 

@@ -17,10 +17,12 @@ use super::text::{
     ContactText, DampingText, DirectionText, KindText, LoadText, ParameterText, TakenText, Text,
     TurningText, ValueText,
 };
-use crate::description::{
-    Damping, Direction, Gyroscopic, Load, LoadKind, OutputKind, Ratios, SparseContact,
-    SparseStructure,
-};
+use crate::description::contact::SparseContact;
+use crate::description::damping::{Damping, Gyroscopic, Ratios};
+use crate::description::direction::Direction;
+use crate::description::load::{Load, LoadKind};
+use crate::description::output::OutputKind;
+use crate::description::structure::SparseStructure;
 use crate::market::MOST_COORDINATES;
 
 /// The structure that a text describes.

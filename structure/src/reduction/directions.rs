@@ -1,6 +1,8 @@
 //! Where a structure is pushed and read.
 
-use crate::description::{Direction, LoadKind, SparseStructure};
+use crate::description::direction::Direction;
+use crate::description::load::LoadKind;
+use crate::description::structure::SparseStructure;
 
 /// Where a structure is pushed and read.
 pub(super) struct Directions {

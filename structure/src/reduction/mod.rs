@@ -30,7 +30,8 @@ use hertzian::Cancel;
 
 pub use error::ReductionError;
 
-use crate::description::{Damping, SparseStructure};
+use crate::description::damping::Damping;
+use crate::description::structure::SparseStructure;
 use crate::factor;
 use crate::lanczos::Basis;
 use crate::reduced::{Asked, Checked, Reduced, ReducedError};

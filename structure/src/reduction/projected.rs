@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::work::Work;
-use crate::description::Damping;
+use crate::description::damping::Damping;
 use crate::lanczos::{self, Basis};
 use crate::matrix::SparseMatrix;
 use crate::reduced::{Checked, Reduced};

@@ -4,7 +4,7 @@
 use super::Reduction;
 use super::directions::Directions;
 use super::error::{ReductionError, singular};
-use crate::description::SparseStructure;
+use crate::description::structure::SparseStructure;
 use crate::factor::{Factor, Ordering};
 use crate::lanczos::{self, Basis, Missing};
 use crate::matrix::SparseMatrix;
