@@ -8,7 +8,7 @@
 //! ```
 //!
 //! of the way `s` along the branch, in units `l` of that to the end of the step, and may pass zero twice in a part of it that is small in `s`. Orbits
-//! are computed at two places in `r`, and where between these (1) or (2) of [`inside`](super::inside) come down to zero in `r`. The same is
+//! are computed at two places in `r`, and where between these (1) or (2) of [`heights`](super::heights) come down to zero in `r`. The same is
 //! done in the next step, since the first may end next to the touch. Where the force jumps determinants go as `a + b / r` instead, as
 //! [behind a corner](super::beyond_corner), where the way itself goes as the root of the height: with `r = s / l` in place of (1) `r` times them is smooth, and is
 //! looked at in the first step from where the walk goes on.
@@ -17,9 +17,11 @@
 //! di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2.
 
 use super::Engine;
+use super::dip::{CLOSE, LOOKS};
 use super::heights::{Height, in_doubt};
-use super::inside::{CLOSE, LOOKS, is_on_way, noise_of, step_between};
 use super::seen::{Crossed, Seen};
+use super::sought::noise_of;
+use super::step_parts::{is_on_way, step_between};
 use crate::branches::problem::{BranchProblem, Test};
 use crate::continuation::locate::{ArcLength, inside_over};
 use crate::continuation::newton::{Newton, NewtonOptions};

@@ -19,8 +19,8 @@
 use super::Engine;
 use super::corner_search::{Beside, Corner, CornerSearch, FIRST};
 use super::heights::{Height, in_doubt};
-use super::inside::noise_of;
 use super::seen::Seen;
+use super::sought::noise_of;
 use crate::branches::problem::{BranchProblem, Test};
 use crate::event::EventKind;
 

@@ -16,8 +16,8 @@
 //! multipliers outside of the circle changes).
 
 use super::Engine;
-use super::inside::step_between;
 use super::seen::{Seen, changes, is_modulus, signs};
+use super::step_parts::step_between;
 use crate::branches::moduli;
 use crate::branches::point::Event;
 use crate::branches::problem::{BranchProblem, Change, Test};

@@ -9,8 +9,8 @@ use super::Engine;
 use super::counted::PLACES;
 use super::grazing_search::{Approach, Reached, on_the_way};
 use super::grazing_within_step::Steps;
-use super::inside::step_between;
 use super::seen::{Crossed, Seen};
+use super::step_parts::step_between;
 use crate::branches::extreme::{
     Bend, Extreme, Passage, appears, crossings, distinct, is_copy, passed,
 };

@@ -1,11 +1,12 @@
 //! Extremes of gaps that go through their level and back within a step.
 //!
 //! Both ends show such an extreme on one side of its level. How near it may come in between is told by its distance at three successive
-//! points, as of a test function that may pass zero twice: see (1) of [`inside`](super::inside).
+//! points, as of a test function that may pass zero twice: see (1) of [`heights`](super::heights).
 
+use super::dip::{CLOSE, LOOKS};
 use super::grazing::Gaps;
 use super::heights::{Height, in_doubt};
-use super::inside::{CLOSE, LOOKS, distance};
+use super::step_parts::distance;
 use crate::branches::extreme::Extreme;
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::Step;

@@ -127,7 +127,7 @@ fn lowest_between(a: Height, b: Height, c: f64) -> Height {
 
 #[cfg(test)]
 mod tests {
-    use super::super::inside::{CLOSE, LOOKS};
+    use super::super::dip::{CLOSE, LOOKS};
     use super::*;
 
     /// Where a function is found below zero between the last two of three points, or else the number of orbits that were looked at.

@@ -10,8 +10,9 @@
 //! | Neimark-Sacker | the [moduli](crate::branches::moduli) of multipliers, where more of them pass one than the others explain |
 //! | others | what the method gives: [`BranchProblem::watched`] |
 //!
-//! 1. A step is [divided](inside) where a function passes zero twice in it, as far as three points tell, two pairs of multipliers
-//!    [meet](meeting), or an extreme of a gap passes a [narrow] place of its law.
+//! 1. A step is [divided](inside) where a [function](sought) passes zero [twice](dip) in it, as far as three points tell, two pairs of
+//!    multipliers [meet](meeting), a fold and a crossing are [beside](beside_turn) each other, or an extreme of a gap passes a [narrow] place
+//!    of its law.
 //! 2. What changes its sign in a part is [located](zero) and read.
 //! 3. A step that [leaps](leap) over two folds, or to another limb, is made again, shorter.
 //! 4. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
@@ -25,11 +26,13 @@
 
 mod back;
 mod behind_touch;
+mod beside_turn;
 mod beyond_corner;
 mod corner;
 mod corner_events;
 mod corner_search;
 mod counted;
+mod dip;
 mod explained;
 mod grazing;
 mod grazing_search;
@@ -42,6 +45,8 @@ mod meeting;
 mod narrow;
 mod seen;
 mod shown_between;
+mod sought;
+mod step_parts;
 #[cfg(test)]
 mod tests;
 mod walk;
@@ -51,9 +56,9 @@ pub(crate) use back::STOPPED;
 use explained::Displaced;
 use grazing::Bent;
 use grazing::Gaps;
-use inside::distance;
 use joint::Joint;
 use seen::{Crossed, Former, Seen, changes, is_modulus};
+use step_parts::distance;
 use walk::Looked;
 pub(crate) use walk::{Places, Walk};
 use zero::Recorded;

@@ -4,8 +4,9 @@
 //! taken in parts, which are looked at as steps are, and what changes its sign in them more often than between both ends is recorded.
 
 use super::Engine;
-use super::inside::{distance, insert, is_on_way, step_between, tests};
 use super::seen::{Seen, signs};
+use super::sought::tests;
+use super::step_parts::{distance, insert, is_on_way, step_between};
 use crate::branches::problem::{BranchProblem, Change, Test};
 use crate::continuation::locate::inside;
 use crate::continuation::newton::Newton;

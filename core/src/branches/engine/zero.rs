@@ -1,8 +1,8 @@
 //! Locates where a test function vanishes between two points, and has the orbit there read.
 
 use super::Engine;
-use super::inside::step_between;
 use super::seen::Seen;
+use super::step_parts::step_between;
 use crate::branches::extreme::{Bend, crossings, passed};
 use crate::branches::problem::{BranchProblem, Change, Root, Test, TestValue, Zero, ZeroOutcome};
 use crate::continuation::crossing::locate_crossing;
