@@ -22,8 +22,10 @@
 //! Computational Physics 176 (the same for forces of the state).
 
 use super::equations::setting::Setting;
-use super::linear_part::block::{Block, Kernel, Pair, add};
-use super::linear_part::values::{Contact, Instant, Values, pair, turn};
+use super::linear_part::block::{Block, Kernel, Pair, add, pair};
+use super::linear_part::contact::{Contact, Instant};
+use super::linear_part::values::Values;
+use super::linear_part::wave::turn;
 use crate::law::On;
 use crate::laws::single::Single;
 use crate::numeric::fourier::gauss;

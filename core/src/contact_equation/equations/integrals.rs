@@ -22,9 +22,9 @@ use std::ops::Range;
 use multiversion::multiversion;
 
 use crate::contact_equation::collocation::nodes::Nodes;
-use crate::contact_equation::linear_part::block::{Block, Pair, add_both, times};
+use crate::contact_equation::linear_part::block::{Block, Pair, add_both, pair, times};
 use crate::contact_equation::linear_part::kernels::Found;
-use crate::contact_equation::linear_part::values::{Values, pair};
+use crate::contact_equation::linear_part::values::Values;
 use crate::contact_equation::skeleton::interval::Active;
 
 /// Of one interval. Forced states stand state by state, target by target.

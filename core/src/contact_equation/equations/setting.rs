@@ -5,8 +5,9 @@ use std::sync::{Arc, OnceLock};
 
 use crate::cancel::Cancel;
 use crate::contact_equation::linear_part::configuration::Configuration;
+use crate::contact_equation::linear_part::contact::Contact;
 use crate::contact_equation::linear_part::moving_stiffness::as_contacts;
-use crate::contact_equation::linear_part::values::{Contact, Values};
+use crate::contact_equation::linear_part::values::Values;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::placement::Resolution;
 use crate::laws::generic::scales::Scales;

@@ -10,8 +10,9 @@
 //! target by target, so that plain loops go over many of them.
 
 use super::integrals::Integrals;
-use crate::contact_equation::linear_part::block::{Pair, add, add_both, times};
-use crate::contact_equation::linear_part::values::{Values, pair, turn};
+use crate::contact_equation::linear_part::block::{Pair, add, add_both, pair, times};
+use crate::contact_equation::linear_part::values::Values;
+use crate::contact_equation::linear_part::wave::turn;
 
 /// An interval that begins with these states.
 #[derive(Debug, Clone, Copy)]

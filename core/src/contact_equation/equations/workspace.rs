@@ -2,7 +2,7 @@
 
 use super::integrals::Integrals;
 use super::targets::Targets;
-use crate::contact_equation::linear_part::values::Output;
+use crate::contact_equation::linear_part::contact::Output;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::interval::Interval;
 use crate::numeric::linear::Placed;

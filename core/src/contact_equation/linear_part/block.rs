@@ -74,6 +74,11 @@ pub(in crate::contact_equation) struct Kernel {
     pub(in crate::contact_equation) k: f64,
 }
 
+/// Two of the states.
+pub(in crate::contact_equation) fn pair(states: &[f64], r: usize) -> Pair {
+    [states[2 * r], states[2 * r + 1]]
+}
+
 /// The product of a matrix and two states.
 pub(in crate::contact_equation) fn times(a: Square, x: Pair) -> Pair {
     [

@@ -21,9 +21,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::block::{Block, add, add_both};
+use super::contact::Contact;
 use super::linear::{Linear, Seen, seen};
 use super::refined::Pairs;
-use super::values::{Contact, Values, Wave};
+use super::values::Values;
+use super::wave::Wave;
 use crate::law::{Derivatives, On, Variation};
 use crate::system::System;
 

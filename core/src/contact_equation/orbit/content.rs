@@ -25,8 +25,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use super::motion::Motion;
-use crate::contact_equation::linear_part::block::{Block, Pair};
-use crate::contact_equation::linear_part::values::pair;
+use crate::contact_equation::linear_part::block::{Block, Pair, pair};
 
 /// What turns by less between two samples is followed by them.
 const FOLLOWED: f64 = FRAC_PI_4;

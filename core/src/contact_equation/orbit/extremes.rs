@@ -30,7 +30,7 @@ use super::signal::{Look, Of, Signal};
 use super::sums::integrals_of;
 use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::linear_part::block::Block;
-use crate::contact_equation::linear_part::values::Contact;
+use crate::contact_equation::linear_part::contact::Contact;
 use crate::contact_equation::skeleton::placement::Told;
 use crate::numeric::roots::Place;
 

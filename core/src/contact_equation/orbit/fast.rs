@@ -11,9 +11,8 @@ use multiversion::multiversion;
 use super::motion::Motion;
 use crate::contact_equation::collocation::partway::Partway;
 use crate::contact_equation::equations::pass_results::Passed;
-use crate::contact_equation::linear_part::block::Block;
+use crate::contact_equation::linear_part::block::{Block, pair};
 use crate::contact_equation::linear_part::kernels::{Found, Kernels};
-use crate::contact_equation::linear_part::values::pair;
 use crate::numeric::fourier::kernels::LANES;
 
 /// Those of one interval.

@@ -9,9 +9,8 @@ use super::motion::Room;
 use crate::contact_equation::collocation::nodes::Nodes;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::equations::pass_results::Passed;
-use crate::contact_equation::linear_part::block::{Block, Pair};
+use crate::contact_equation::linear_part::block::{Block, Pair, pair};
 use crate::contact_equation::linear_part::linear::Linear;
-use crate::contact_equation::linear_part::values::pair;
 
 /// At one place of an interval.
 pub(super) struct Forced<'e> {

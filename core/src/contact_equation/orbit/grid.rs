@@ -14,10 +14,10 @@ use std::cell::OnceCell;
 use multiversion::multiversion;
 
 use super::motion::Motion;
-use crate::contact_equation::linear_part::block::{Block, Pair, Square};
+use crate::contact_equation::linear_part::block::{Block, Pair, Square, pair};
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::linear::Seen;
-use crate::contact_equation::linear_part::values::{pair, turn};
+use crate::contact_equation::linear_part::wave::turn;
 
 /// A row that sees more than this part of all pairs has the exponentials of all at once.
 const MANY: usize = 8;

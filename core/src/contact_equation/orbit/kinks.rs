@@ -36,7 +36,7 @@ use super::gaps::Gaps;
 use super::motion::Motion;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::equations::setting::Setting;
-use crate::contact_equation::linear_part::values::Contact;
+use crate::contact_equation::linear_part::contact::Contact;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::interval::{Cut, Interval, Mark};
 use crate::contact_equation::skeleton::placement::{APART, EDGE, Kink, MOST};

@@ -11,11 +11,12 @@ use super::forced::Forced;
 use crate::contact_equation::collocation::partway::Partway;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::equations::pass_results::GapExtreme;
-use crate::contact_equation::linear_part::block::Block;
+use crate::contact_equation::linear_part::block::{Block, pair};
 use crate::contact_equation::linear_part::configuration::Configuration;
+use crate::contact_equation::linear_part::contact::Contact;
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::linear::{Seen, of_states};
-use crate::contact_equation::linear_part::values::{Contact, Values, pair};
+use crate::contact_equation::linear_part::values::Values;
 use crate::numeric::roots::Place;
 use crate::time;
 

@@ -4,9 +4,9 @@
 //! Source: Meirovitch (2001), Fundamentals of Vibrations, section 7.15 (motions as sums over pairs of states).
 
 use super::motion::Motion;
-use crate::contact_equation::linear_part::block::{add_both, times};
+use crate::contact_equation::linear_part::block::{add_both, pair, times};
 use crate::contact_equation::linear_part::kernels::Found;
-use crate::contact_equation::linear_part::values::{pair, turn};
+use crate::contact_equation::linear_part::wave::turn;
 
 /// A phase that is asked for, shifted into an interval.
 #[derive(Debug, Clone, Copy)]

@@ -24,10 +24,10 @@ use super::motion::Motion;
 use super::pieces::Piece;
 use super::sums::Exponential;
 use crate::contact_equation::collocation::nodes::Nodes;
-use crate::contact_equation::linear_part::block::{Pair, row_times, times};
+use crate::contact_equation::linear_part::block::{Pair, pair, row_times, times};
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::linear::{Seen, of_states, seen};
-use crate::contact_equation::linear_part::values::{pair, turn};
+use crate::contact_equation::linear_part::wave::turn;
 
 /// Exponentials that are smaller in parts of a signal are none.
 const NOTHING: f64 = 1e-19;

@@ -8,7 +8,7 @@ pub(super) mod images;
 use self::error_estimate::Screened;
 use super::equations::Equations;
 use super::equations::setting::Frame;
-use super::linear_part::values::Contact;
+use super::linear_part::contact::Contact;
 use super::orbit::gaps::{At, Gaps};
 use super::orbit::motion::Motion;
 use super::problem::{ContactProblem, RESOLUTIONS};

@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use crate::branches::recurrence::Recurrence;
-use crate::contact_equation::linear_part::values::Contact;
+use crate::contact_equation::linear_part::contact::Contact;
 
 /// How a switch is told by its unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,7 +7,7 @@ use crate::branches::recurrence::Recurrence;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::equations::pass_results::GapExtreme;
 use crate::contact_equation::equations::setting::{Frame, Setting};
-use crate::contact_equation::linear_part::values::Contact;
+use crate::contact_equation::linear_part::contact::Contact;
 use crate::contact_equation::orbit::gaps::{BEND, Gaps, Shape, beginning, piece, room, seen};
 use crate::contact_equation::orbit::kinks::kinks;
 use crate::contact_equation::skeleton::Skeleton;
