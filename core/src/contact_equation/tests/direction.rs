@@ -7,7 +7,7 @@ crate::oscillator! {
     MovingStop(x) {
         param m = 2.050277680436693;
         param k = 14256045001.05976;
-        param width = 0.27191692296502296;
+        param width = 0.27191692296502296 > 0;
         law stop(gap) { gap > 0 => 7510630327.778269*(gap/width)^2.3502710127559525, else => 0 }
         m*ddot(x) + 63455.007894972296*dot(x) + k*x - stop(0.1210904347500238 - x - 0.1070421505497526*sin(2*omega*t))
             = 8460102743.041043*cos(omega*t);
