@@ -40,16 +40,6 @@ fn look_ahead(at: &mut CurvePoint, previous: &CurvePoint, equations: &Equations)
     }
 }
 
-/// Where no step is known in other unknowns, what is varied tells which way the walk goes: by the slope of its tangent in those before.
-fn keep_slope(tangent: &mut [f64], slope: f64) {
-    if let Some(last) = tangent.last().copied()
-        && last * slope <= 0.0
-    {
-        tangent.fill(0.0);
-        tangent[tangent.len() - 1] = slope;
-    }
-}
-
 impl ContactBranch<'_, '_> {
     /// Where the first orbit of a walk is in the equations that it goes on with.
     fn first_in(&mut self, halted: &Halted, next: &Next) -> Option<CurvePoint> {
@@ -120,7 +110,6 @@ impl ContactBranch<'_, '_> {
             return;
         };
         let length = next.u.len();
-        let slope = halted.point.tangent.last().copied().unwrap_or(0.0);
         let first = self.first_in(halted, &next);
         let mut point = |of: &CurvePoint| self.point_in(of, &next);
         if let Some(known) = point(&halted.point) {
@@ -131,10 +120,8 @@ impl ContactBranch<'_, '_> {
         halted.point.u.clone_from(&next.u);
         halted.previous = halted.previous.as_ref().and_then(&mut point);
         halted.earlier = halted.earlier.as_ref().and_then(&mut point);
-        if let Some(before) = halted.previous.as_ref().or(halted.earlier.as_ref()) {
-            look_ahead(&mut halted.point, before, &next.equations);
-        } else if next.same == Same::Orbit {
-            keep_slope(&mut halted.point.tangent, slope);
+        if let Some(previous) = &halted.previous {
+            look_ahead(&mut halted.point, previous, &next.equations);
         }
         let here = first
             .as_ref()

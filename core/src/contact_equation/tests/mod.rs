@@ -4,7 +4,6 @@ mod affine;
 mod both_sides;
 mod closed;
 mod completed;
-mod direction;
 mod grazings;
 mod growing;
 mod images;
