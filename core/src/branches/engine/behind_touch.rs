@@ -27,7 +27,7 @@ use crate::continuation::locate::{ArcLength, inside_over};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::event::EventKind;
 
-/// Where orbits are computed in any case, by (1).
+/// Where orbits are computed in any case: by (1), and as parts of what is left in `r = s / l` where the force jumps and orbits beside that are known.
 const PLACES: [f64; 2] = [0.3, 0.65];
 /// Orbits that are looked for to come to a place, at most.
 const TRIES: usize = 12;

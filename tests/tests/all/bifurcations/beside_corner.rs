@@ -91,7 +91,7 @@ fn a_fold_on_the_way_to_a_corner_hides_no_bifurcation() {
     }
 }
 
-/// Downwards by shooting three doublings are in one long part of the way beside a corner, which shows one change of the sign.
+/// Downwards by shooting three doublings are in one long part of the way beside a corner, which shows one change of the sign. The two that were lost are asked for.
 #[test]
 fn three_doublings_on_the_way_to_a_corner_are_found() {
     let system = &Masses {
