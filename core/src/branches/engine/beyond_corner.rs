@@ -187,7 +187,10 @@ impl Beyond<'_, '_> {
             let Some([from, to]) = long else {
                 break;
             };
-            if !self.add_near(0.5 * (from + to)) {
+            let is_added = self.add_near(0.5 * (from + to));
+            // What is found by its height may lie elsewhere.
+            let inside = |known: &Known| known.place > from && known.place < to;
+            if !is_added || !self.known.iter().any(inside) {
                 shut.push(from);
             }
         }

@@ -13,14 +13,14 @@
 
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::orbit::motion::Motion;
-use crate::contact_equation::run::DIFFERENCE;
+use crate::contact_equation::run::difference_step;
 use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::placement::Told;
 use crate::continuation::follow::CurvePoint;
 
 /// (1), and the component along what is varied; empty where the motion beside the point is not known.
 pub(super) fn of_states(equations: &mut Equations, at: &CurvePoint, periods: usize) -> Vec<f64> {
-    let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
+    let step = difference_step(&at.u, &at.tangent);
     let ways = ways(&equations.skeleton, at, step);
     let mut beside = |step: f64| {
         let pairs = at.u.iter().zip(&at.tangent);

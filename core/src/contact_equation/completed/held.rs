@@ -20,7 +20,7 @@ use crate::contact_equation::equations::Equations;
 use crate::contact_equation::guess::Guess;
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::problem::{ContactProblem, FIRST};
-use crate::contact_equation::run::{DIFFERENCE, Run};
+use crate::contact_equation::run::{Run, difference_step};
 use crate::contact_equation::switches::fits::Fits;
 use crate::continuation::newton::{Border, Newton};
 use crate::numeric::linear::dot;
@@ -107,7 +107,7 @@ pub(super) fn along<'p>(
 
 /// (1)
 fn nearer(equations: &mut Equations, u: &[f64], tangent: &[f64], point: &Point) -> Option<f64> {
-    let step = DIFFERENCE / tangent.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
+    let step = difference_step(u, tangent);
     let moved: Vec<f64> = u.iter().zip(tangent).map(|(x, t)| x + step * t).collect();
     let [here, there] = [u, &moved].map(|u| {
         equations.compute(u, false);

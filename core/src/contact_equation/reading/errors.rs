@@ -22,7 +22,7 @@ use crate::contact_equation::linear_part::block::Block;
 use crate::contact_equation::orbit::extremes::extremes_of;
 use crate::contact_equation::orbit::motion::Motion;
 use crate::contact_equation::orbit::positions::positions;
-use crate::contact_equation::run::{DIFFERENCE, MULTIPLIERS, Run};
+use crate::contact_equation::run::{MULTIPLIERS, Run, difference_step};
 use crate::continuation::follow::CurvePoint;
 use crate::numeric::roots::Place;
 use crate::orbit::observe::Accuracy;
@@ -103,7 +103,7 @@ impl Run<'_> {
             _ => self.equations.extremes.coordinates.get()?.clone(),
         };
         let slope = at.tangent[at.tangent.len() - 1];
-        let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
+        let step = difference_step(&at.u, &at.tangent);
         let moved = at.u.iter().zip(&at.tangent);
         let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
         let multipliers = if let Some(here) = here {

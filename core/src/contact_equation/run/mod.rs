@@ -20,8 +20,17 @@ use crate::branches::recurrence::Recurrence;
 use crate::continuation::statistics::Statistics;
 use crate::laws::generic::scales::Scales;
 
-/// Tangents in other unknowns are differences over so much of the largest entry.
-pub(super) const DIFFERENCE: f64 = 1e-5;
+/// Differences along a tangent move no unknown by more than this part of it, or of one where it is less: forces may be 1e10 and gaps 1.
+const DIFFERENCE: f64 = 1e-5;
+
+/// How far along a tangent differences go.
+pub(super) fn difference_step(u: &[f64], tangent: &[f64]) -> f64 {
+    let parts = u.iter().zip(tangent);
+    let most = parts.fold(1e-3, |most: f64, (u, t)| {
+        most.max(t.abs() / u.abs().max(1.0))
+    });
+    DIFFERENCE / most
+}
 
 /// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
 /// events are seen that are none.

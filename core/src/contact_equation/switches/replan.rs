@@ -13,7 +13,7 @@ use super::transfer;
 use crate::contact_equation::equations::Equations;
 use crate::contact_equation::equations::setting::Frame;
 use crate::contact_equation::problem::RESOLUTIONS;
-use crate::contact_equation::run::{DIFFERENCE, Run};
+use crate::contact_equation::run::{Run, difference_step};
 use crate::contact_equation::skeleton::placement::Told;
 use crate::continuation::follow::CurvePoint;
 
@@ -57,7 +57,7 @@ impl Run<'_> {
         near: &[f64],
     ) -> Option<CurvePoint> {
         let u = self.transferred(&point.u, to, near)?;
-        let step = DIFFERENCE / point.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
+        let step = difference_step(&point.u, &point.tangent);
         let along = self.beside_touches(point, step);
         let mut beside = |step: f64| {
             let moved = point.u.iter().zip(&along);

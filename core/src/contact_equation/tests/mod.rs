@@ -4,6 +4,7 @@ mod affine;
 mod both_sides;
 mod closed;
 mod completed;
+mod direction;
 mod grazings;
 mod growing;
 mod images;
