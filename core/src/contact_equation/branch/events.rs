@@ -29,7 +29,7 @@ use crate::contact_equation::run::Run;
 use crate::contact_equation::run::error_estimate::Screened;
 use crate::contact_equation::switches::fits::Fits;
 use crate::continuation::follow::{CurvePoint, Step};
-use crate::continuation::newton::{Border, Newton, NewtonOptions};
+use crate::continuation::newton::{Border, Converged, Newton, NewtonError, NewtonOptions};
 use crate::event::EventKind;
 use crate::numeric::linear::dot;
 use crate::numeric::roots::{self, Place};
@@ -61,11 +61,16 @@ const SAME_TOUCH: f64 = 100.0;
 const TOUCHED: f64 = 4e-12;
 /// Where branches cross a multiplier is one; none is where all are farther from it than this and ten times their error.
 const FAR: f64 = 0.1;
-/// Of Newton's method with more nodes.
+/// Of Newton's method with more nodes; and where a node lies beside a kink of its law that no switch is at, so that updates go to and fro across it.
 const OPTIONS: NewtonOptions = NewtonOptions {
     tolerance: 1e-11,
     iterations: 12,
     damped: false,
+};
+const DAMPED: NewtonOptions = NewtonOptions {
+    iterations: 40,
+    damped: true,
+    ..OPTIONS
 };
 /// An orbit that moves farther, in units of the orbit, is another one.
 const FARTHEST: f64 = 0.1;
@@ -275,9 +280,9 @@ impl<'c> Curve<'c> {
             row: form,
             value: dot(form, &start.u) + s,
         };
-        newton
-            .correct(*equations, &mut u, border, start.scale, OPTIONS)
-            .ok()?;
+        damped_if_need_be(&mut u, |u, options| {
+            newton.correct(*equations, u, border, start.scale, options)
+        })?;
         let mut tangent = vec![0.0; u.len()];
         newton.tangent(*equations, &u, &mut tangent, true);
         let size = newton.norm().length(start.scale, &tangent);
@@ -297,6 +302,20 @@ impl<'c> Curve<'c> {
         };
         Some((point, value))
     }
+}
+
+/// Solves as it is, and again with damping from the same start where that does not converge.
+fn damped_if_need_be(
+    u: &mut [f64],
+    mut solve: impl FnMut(&mut [f64], NewtonOptions) -> Result<Converged, NewtonError>,
+) -> Option<Converged> {
+    let start = u.to_vec();
+    solve(u, OPTIONS)
+        .or_else(|_| {
+            u.copy_from_slice(&start);
+            solve(u, DAMPED)
+        })
+        .ok()
 }
 
 /// Where the test function vanishes along the curve of these equations, near a point of a coarser one, by (1).
@@ -490,7 +509,10 @@ fn with_more_nodes(equations: &mut Equations, mut u: Vec<f64>, square: usize) ->
         let mut there = from.rearranged(&next, &u);
         there[square] = 0.0;
         let mut newton = Newton::new(&next);
-        if solve::with_held(&mut next, &mut newton, &mut there, square, OPTIONS).is_err() {
+        let solved = damped_if_need_be(&mut there, |u, options| {
+            solve::with_held(&mut next, &mut newton, u, square, options)
+        });
+        if solved.is_none() {
             break;
         }
         let value = there[there.len() - 1];

@@ -77,7 +77,10 @@ fn errors_beside_kinks_hold() {
 #[test]
 fn events_beside_kinks_are_those_of_shooting() {
     let model = Kinked {};
-    events_agree(&FrequencyResponse::of(&model).from(0.6).to(1.4));
+    for tolerance in [1e-6, 1e-8, 1e-10] {
+        let request = FrequencyResponse::of(&model).from(0.6).to(1.4);
+        events_agree(&request.tolerance(tolerance));
+    }
 }
 
 /// Its multipliers are not defined: what is between the masses is linear on neither side.
