@@ -39,8 +39,10 @@ const _: () = {
 };
 /// Points of the rules between two targets, and up to which angle of a kernel on the way each serves: polynomials through nodes turn by half of a period
 /// there, and with `n` points what is left of a wave that turns by `T` is as large as the Bessel function `J_2n(T / 2)`.
-const POINTS: [usize; 6] = [12, 16, 20, 24, 32, 48];
-const TURNS: [f64; 6] = [3.0, 8.0, 13.0, 18.0, 30.0, 90.0];
+const POINTS: [usize; RULES] = [12, 16, 20, 24, 32, 48];
+const TURNS: [f64; RULES] = [3.0, 8.0, 13.0, 18.0, 30.0, 90.0];
+/// How many rules there are.
+pub(in crate::contact_equation) const RULES: usize = 6;
 /// The largest power of which polynomials stand for the force itself.
 const PLAIN_POWER: usize = 2;
 /// Points of the rule for (2).
@@ -77,7 +79,9 @@ pub(in crate::contact_equation) struct Nodes {
     pub(in crate::contact_equation) once: Vec<f64>,
     pub(in crate::contact_equation) twice: Vec<f64>,
     /// Rules between successive targets, coarser ones first.
-    between: [OnceLock<Between>; POINTS.len()],
+    between: [OnceLock<Between>; RULES],
+    /// The ways between targets.
+    ways: Vec<f64>,
     /// By how much a kernel that turns once over the whole stretch may turn on each way between two targets, and the most of these.
     reaches: Vec<f64>,
     reach: f64,
@@ -91,7 +95,7 @@ pub(in crate::contact_equation) struct Nodes {
 #[derive(Debug)]
 pub(in crate::contact_equation) struct Between {
     /// Where the points of each way begin, and where all end.
-    starts: Vec<usize>,
+    pub(in crate::contact_equation) starts: Vec<usize>,
     /// What is left to the end of the way, for every point of it.
     pub(in crate::contact_equation) left: Vec<f64>,
     /// Weight times every polynomial there.
@@ -168,6 +172,7 @@ impl Nodes {
             once: Vec::new(),
             twice: Vec::new(),
             between: Default::default(),
+            ways: Vec::new(),
             reaches: Vec::new(),
             reach: 0.0,
             widest: 0.0,
@@ -181,8 +186,10 @@ impl Nodes {
     /// Fills (2) by sums over the ways between targets.
     fn integrate(&mut self) {
         let n = self.count();
-        let mut ways = vec![self.targets[0]];
-        ways.extend(self.targets.windows(2).map(|pair| pair[1] - pair[0]));
+        self.ways = vec![self.targets[0]];
+        let pairs = self.targets.windows(2);
+        self.ways.extend(pairs.map(|pair| pair[1] - pair[0]));
+        let ways = &self.ways;
         self.widest = ways.iter().copied().fold(0.0, f64::max);
         let ends = [-1.0].iter().chain(&self.y);
         let pairs = ends.zip(self.y.iter().chain(&[1.0]));
@@ -246,11 +253,20 @@ impl Nodes {
         rule
     }
 
-    /// The rule that serves a kernel which turns by this angle, or decays by so many powers of `e`, over a whole stretch.
-    pub(in crate::contact_equation) fn between(&self, fast: f64) -> &Between {
-        let index = place_for(fast * self.reach);
-        self.between[index].get_or_init(|| {
-            let part = TURNS[index] / self.reach;
+    /// The ways between targets, as parts of the stretch.
+    pub(in crate::contact_equation) fn ways(&self) -> &[f64] {
+        &self.ways
+    }
+
+    /// The place of the rule that serves a kernel which turns by this angle, or decays by so many powers of `e`, over a whole stretch.
+    pub(in crate::contact_equation) fn place_for(&self, fast: f64) -> usize {
+        place_for(fast * self.reach)
+    }
+
+    /// The rule in this place.
+    pub(in crate::contact_equation) fn rule(&self, place: usize) -> &Between {
+        self.between[place].get_or_init(|| {
+            let part = TURNS[place] / self.reach;
             self.rule_between(|way| POINTS[place_for(part * self.reaches[way])])
         })
     }

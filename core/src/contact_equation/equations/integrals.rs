@@ -9,20 +9,17 @@
 //!
 //! with the time `s` of the interval and `h` of the way, and for every point `q` of the rule its weight `w_q` and what is left to the end of
 //! the way, `d_q`, as parts of the interval. (2) summed over the ways is the derivative in (3) of [`equations`](crate::contact_equation::equations).
+//! What unit forces do stands in [`tables`](super::tables), where derivatives are asked for.
 //!
 //! Source: Davis and Rabinowitz (1984), Methods of Numerical Integration, chapter 2 (compound rules of Gauss type).
-
-#![allow(
-    clippy::inline_always,
-    reason = "what is not inlined is not compiled for the instruction set of its caller"
-)]
 
 use std::ops::Range;
 
 use multiversion::multiversion;
 
-use crate::contact_equation::collocation::nodes::Nodes;
-use crate::contact_equation::linear_part::block::{Block, Pair, add_both, pair, times};
+use super::tables::{Tables, place_of_rule};
+use crate::contact_equation::collocation::nodes::{Nodes, RULES};
+use crate::contact_equation::linear_part::block::{Block, Pair, add, add_both, pair, times};
 use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::values::Values;
 use crate::contact_equation::skeleton::interval::Active;
@@ -31,9 +28,7 @@ use crate::contact_equation::skeleton::interval::Active;
 #[derive(Debug, Default)]
 pub(super) struct Integrals {
     nodes: usize,
-    /// Per pair, row by row of targets, node by node: coefficients of `I` and of `D`.
-    once: Vec<f64>,
-    twice: Vec<f64>,
+    tables: Tables,
     /// Per active contact: what a unit force does to the states, state by state, node by node.
     input: Vec<f64>,
     /// What all forces together do to a state, node by node; and, where directions move, how that changes with where the interval begins,
@@ -45,10 +40,11 @@ pub(super) struct Integrals {
     by_time: Vec<f64>,
     /// Directions move with the phase.
     moves: bool,
-    /// Kernels at the points of the rule.
-    kernels: Found,
-    /// What the forces do to the states of a pair at the points of the rule.
-    at_points: [Vec<f64>; 2],
+    /// The forces at the points of every rule, contact by contact, if they are known.
+    forces: [Vec<f64>; RULES],
+    /// What the forces do to a state at the points of its rule, and sums of that over each way.
+    at_points: Vec<f64>,
+    on_ways: [Vec<[f64; 4]>; 2],
     /// Sums over nodes for the states of a pair.
     sums: [Vec<f64>; 4],
     row: Vec<f64>,
@@ -57,6 +53,8 @@ pub(super) struct Integrals {
 /// An interval whose forces are these.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Loaded<'l> {
+    /// Which one it is.
+    pub(super) interval: usize,
     pub(in crate::contact_equation) values: &'l Values,
     pub(in crate::contact_equation) nodes: &'static Nodes,
     pub(in crate::contact_equation) active: &'l [Active],
@@ -71,21 +69,25 @@ impl Integrals {
     /// Room for so many states, nodes, and forces.
     pub(in crate::contact_equation) fn new(order: usize, nodes: usize, forces: usize) -> Self {
         let targets = nodes + 1;
-        let tables = || vec![0.0; order / 2 * targets * nodes];
         Self {
             nodes: 0,
-            once: tables(),
-            twice: tables(),
+            tables: Tables::new(order, nodes),
             input: vec![0.0; forces * order],
             load: std::array::from_fn(|_| vec![0.0; nodes * order]),
             forced: std::array::from_fn(|_| vec![0.0; targets * order]),
             by_time: vec![0.0; targets * order],
             moves: false,
-            kernels: Found::default(),
-            at_points: [Vec::new(), Vec::new()],
+            forces: Default::default(),
+            at_points: Vec::new(),
+            on_ways: std::array::from_fn(|_| vec![[0.0; 4]; targets]),
             sums: std::array::from_fn(|_| vec![0.0; targets]),
             row: vec![0.0; order],
         }
+    }
+
+    /// The linear part is another one.
+    pub(super) fn forget(&mut self) {
+        self.tables.forget();
     }
 
     fn targets(&self) -> usize {
@@ -100,22 +102,22 @@ impl Integrals {
             .map(|active| &of.values.contacts[active.contact])
             .any(|contact| !contact.input.is_constant());
         self.loads(of);
-        let size = self.targets() * self.nodes;
+        self.tables.find(of);
+        if of.derivatives {
+            self.tables.fill(of);
+        }
+        for forces in &mut self.forces {
+            forces.clear();
+        }
         for (r, block) in of.values.linear.blocks.iter().enumerate() {
             if block.is_free() {
-                let tables = [&mut self.once, &mut self.twice];
-                let known = [&of.nodes.once, &of.nodes.twice];
-                let factors = [of.time, of.time * of.time];
-                for ((table, known), factor) in tables.into_iter().zip(known).zip(factors) {
-                    let table = &mut table[r * size..][..size];
-                    for (to, of) in table.iter_mut().zip(known) {
-                        *to = factor * of;
-                    }
-                }
+                self.fill_free(of, r, block);
             } else {
-                self.tables(of, r, block);
+                self.follow(of, r, block);
             }
-            self.fill_forced(of, r, block);
+            if self.moves && of.derivatives {
+                self.fill_moving(r, block);
+            }
         }
     }
 
@@ -125,7 +127,8 @@ impl Integrals {
         let Self {
             input, load, row, ..
         } = self;
-        for load in load.iter_mut() {
+        let loads = if self.moves { 3 } else { 1 };
+        for load in &mut load[..loads] {
             load[..n * order].fill(0.0);
         }
         let [from, to] = of.phases;
@@ -152,98 +155,121 @@ impl Integrals {
         }
     }
 
-    /// (1) for every polynomial.
-    fn tables(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
-        let (n, time) = (self.nodes, of.time);
-        let size = self.targets() * n;
-        let once = &mut self.once[r * size..][..size];
-        let twice = &mut self.twice[r * size..][..size];
-        let rule = of.nodes.between(block.rate() * time.abs());
-        self.kernels.find(block, &rule.left, time);
-        let mut before = 0.0;
-        for (way, &psi) in of.nodes.targets.iter().enumerate() {
-            let step = block.kernel((psi - before) * time);
-            before = psi;
-            let (done, to) = (way * n, (way + 1) * n);
-            if way == 0 {
-                once[..n].fill(0.0);
-                twice[..n].fill(0.0);
-            } else {
-                for l in 0..n {
-                    let [a, b] = [once[done - n + l], twice[done - n + l]];
-                    (once[done + l], twice[done + l]) = block.compose(step, a, b);
-                }
+    /// The forced states of a pair that nothing holds, and how they change with the time: with (2) of [nodes](Nodes),
+    ///
+    /// ```text
+    /// X f = s S1 f + s^2 D S2 f                                                                               (3)
+    /// ```
+    fn fill_free(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
+        let (n, targets, time) = (self.nodes, self.targets(), of.time);
+        let loads = [0, 1].map(|i| &self.load[0][(2 * r + i) * n..][..n]);
+        let sums = self.sums.each_mut().map(|of| &mut of[..targets]);
+        products([&of.nodes.once, &of.nodes.twice], loads, sums);
+        let [a, b, c, e] = self.sums.each_ref();
+        let d = block.deviation;
+        let forced = &mut self.forced[0][2 * r * targets..][..2 * targets];
+        let by_time = &mut self.by_time[2 * r * targets..][..2 * targets];
+        for t in 0..targets {
+            for (i, once) in [a[t], b[t]].into_iter().enumerate() {
+                let twice = time * (d[i][0] * c[t] + d[i][1] * e[t]);
+                forced[i * targets + t] = time * (once + twice);
+                by_time[i * targets + t] = once + 2.0 * twice;
             }
-            let points = rule.points(way);
-            let weighted = &rule.weighted[points.start * n..points.end * n];
-            let tables = [&mut once[done..to], &mut twice[done..to]];
-            let kernels = [&self.kernels.c, &self.kernels.k].map(|of| &of[points.clone()]);
-            add_kernels(kernels, time, weighted, tables);
         }
     }
 
-    /// The forced states of a pair.
-    fn fill_forced(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
+    /// How the forced states of a pair change with where the interval begins, and with where it ends, as far as directions move.
+    fn fill_moving(&mut self, r: usize, block: &Block) {
         let (n, targets) = (self.nodes, self.targets());
-        let tables = [&self.once, &self.twice].map(|of| &of[r * targets * n..][..targets * n]);
         let d = block.deviation;
-        for which in 0..if self.moves { 3 } else { 1 } {
+        for which in 1..3 {
             let loads = [0, 1].map(|i| &self.load[which][(2 * r + i) * n..][..n]);
             let sums = self.sums.each_mut().map(|of| &mut of[..targets]);
-            products(tables, loads, sums);
+            products(self.tables.of_pair(r), loads, sums);
             let [a, b, c, e] = self.sums.each_ref();
             let forced = &mut self.forced[which][2 * r * targets..][..2 * targets];
             for t in 0..targets {
                 forced[t] = a[t] + d[0][0] * c[t] + d[0][1] * e[t];
                 forced[targets + t] = b[t] + d[1][0] * c[t] + d[1][1] * e[t];
             }
-            if which == 0 && of.derivatives && block.is_free() {
-                // X f = s S1 f + s^2 D S2 f
-                let by_time = &mut self.by_time[2 * r * targets..][..2 * targets];
-                let per = 1.0 / of.time;
-                for t in 0..targets {
-                    by_time[t] = per * (a[t] + 2.0 * (d[0][0] * c[t] + d[0][1] * e[t]));
-                    by_time[targets + t] = per * (b[t] + 2.0 * (d[1][0] * c[t] + d[1][1] * e[t]));
-                }
-            }
-        }
-        if of.derivatives && !block.is_free() {
-            self.by_time(of, r, block);
         }
     }
 
-    /// (2) of a pair, whose kernels are known.
-    fn by_time(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
-        let (n, targets, time) = (self.nodes, self.targets(), of.time);
-        let rule = of.nodes.between(block.rate() * time.abs());
-        for (i, to) in self.at_points.iter_mut().enumerate() {
-            to.resize(rule.left.len(), 0.0);
-            let load = &self.load[0][(2 * r + i) * n..][..n];
-            write_products(&rule.weighted, load, to);
+    /// (1) and (2) of a pair, whose kernels are known.
+    fn follow(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
+        let (targets, time) = (self.targets(), of.time);
+        let place = place_of_rule(of, block);
+        let rule = of.nodes.rule(place);
+        for i in 0..2 {
+            let acts = self.write_at_points(of, place, 2 * r + i);
+            let sums = &mut self.on_ways[i][..targets];
+            if acts {
+                let Found { c, k, .. } = self.tables.at_points(r);
+                write_sums(&rule.starts, [c, k, &rule.left], &self.at_points, sums);
+            } else {
+                sums.fill([0.0; 4]);
+            }
         }
         let (mut integral, mut slope) = ([0.0; 2], [0.0; 2]);
-        let mut before = 0.0;
-        for (way, &psi) in of.nodes.targets.iter().enumerate() {
-            let step = psi - before;
-            before = psi;
-            let e = block.exponential(step * time);
-            let driven = times(block.matrix, integral);
-            slope = times(e, [0, 1].map(|i| slope[i] + step * driven[i]));
-            integral = times(e, integral);
-            for place in rule.points(way) {
-                let sum = [self.at_points[0][place], self.at_points[1][place]];
-                let left = rule.left[place] * time;
-                let carried = block.carried(self.kernels.kernel(place), sum);
-                let driven = times(block.matrix, carried);
-                for i in 0..2 {
-                    integral[i] += time * carried[i];
-                    slope[i] += carried[i] + left * driven[i];
-                }
+        let (d, ways) = (block.deviation, self.tables.on_ways(r));
+        for (way, step) in of.nodes.ways().iter().enumerate() {
+            let [x, y] = self.on_ways.each_ref().map(|of| of[way]);
+            let through = times(d, [x[1], y[1]]);
+            let carried = [x[0] + through[0], y[0] + through[1]];
+            let e = block.exponential_of(ways.kernel(way));
+            if of.derivatives {
+                let driven = times(block.matrix, integral);
+                let through = times(d, [x[3], y[3]]);
+                let left = times(block.matrix, [x[2] + through[0], y[2] + through[1]]);
+                slope = times(e, [0, 1].map(|i| slope[i] + step * driven[i]));
+                slope = [0, 1].map(|i| slope[i] + carried[i] + time * left[i]);
             }
+            integral = times(e, integral);
+            integral = [0, 1].map(|i| integral[i] + time * carried[i]);
             for i in 0..2 {
-                self.by_time[(2 * r + i) * targets + way] = slope[i];
+                let at = (2 * r + i) * targets + way;
+                self.forced[0][at] = integral[i];
+                self.by_time[at] = slope[i];
             }
         }
+    }
+
+    /// Writes what forces do to a state at the points of a rule, with their weights. Says whether they do anything. Where directions do not move that is
+    /// what each force is there, once for all states, times what it does.
+    fn write_at_points(&mut self, of: &Loaded<'_>, place: usize, state: usize) -> bool {
+        let (n, order) = (self.nodes, self.row.len());
+        let rule = of.nodes.rule(place);
+        let count = rule.left.len();
+        self.at_points.resize(count, 0.0);
+        if self.moves {
+            let load = &self.load[0][state * n..][..n];
+            write_products(&rule.weighted, load, &mut self.at_points);
+            return true;
+        }
+        let forces = &mut self.forces[place];
+        if forces.is_empty() {
+            forces.resize(of.active.len() * count, 0.0);
+            for (active, to) in of.active.iter().zip(forces.chunks_exact_mut(count)) {
+                let load = &of.u[active.first..][..n];
+                write_products(&rule.weighted, load, to);
+            }
+        }
+        let mut acts = false;
+        for (place, forces) in forces.chunks_exact(count).enumerate() {
+            let by = self.input[(place * order + state) * n];
+            if by == 0.0 {
+                continue;
+            }
+            if acts {
+                add(&mut self.at_points, by, forces);
+            } else {
+                for (to, force) in self.at_points.iter_mut().zip(forces) {
+                    *to = by * force;
+                }
+            }
+            acts = true;
+        }
+        acts
     }
 
     /// What the forces have done to a state, at all targets; or how that changes with where the interval begins, or with where it ends.
@@ -277,13 +303,12 @@ impl Integrals {
         entries: &mut [f64],
     ) {
         let (n, order) = (self.nodes, self.row.len());
-        let size = self.targets() * n;
         for (place, active) in of.active.iter().enumerate() {
             let moves = !of.values.contacts[active.contact].input.is_constant();
             let entries = &mut entries[place * n..(place + 1) * n];
             for r in pairs.clone() {
-                let tables = [&self.once, &self.twice];
-                let tables = tables.map(|of| &of[r * size + target * n..][..n]);
+                let tables = self.tables.of_pair(r);
+                let tables = tables.map(|of| &of[target * n..][..n]);
                 let input = &self.input[(place * order + 2 * r) * n..][..2 * n];
                 let input: [&[f64]; 2] = input.split_at(n).into();
                 let factors = [row, turned].map(|row| pair(row, r));
@@ -311,49 +336,6 @@ fn add_moving(
     for (entry, ((once, twice), (a, b))) in entries.iter_mut().zip(tables) {
         *entry += once * (row[0] * a + row[1] * b) + twice * (turned[0] * a + turned[1] * b);
     }
-}
-
-/// Adds kernels times weighted polynomials, of some nodes at a time, whose sums are in registers. Nodes are a multiple of four.
-#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn add_kernels(kernels: [&[f64]; 2], time: f64, weighted: &[f64], [once, twice]: [&mut [f64]; 2]) {
-    let nodes = once.len();
-    let mut first = 0;
-    while first < nodes {
-        let tables = [&mut once[first..], &mut twice[first..]];
-        first += match nodes - first {
-            16.. => add_some::<16>(kernels, time, weighted, nodes, first, tables),
-            8.. => add_some::<8>(kernels, time, weighted, nodes, first, tables),
-            _ => add_some::<4>(kernels, time, weighted, nodes, first, tables),
-        };
-    }
-}
-
-/// The same of so many nodes from one on. Says how many they are.
-#[inline(always)]
-fn add_some<const N: usize>(
-    [c, k]: [&[f64]; 2],
-    time: f64,
-    weighted: &[f64],
-    nodes: usize,
-    first: usize,
-    [once, twice]: [&mut [f64]; 2],
-) -> usize {
-    let tables = (once.first_chunk_mut::<N>(), twice.first_chunk_mut::<N>());
-    let (Some(once), Some(twice)) = tables else {
-        return N;
-    };
-    let (mut a, mut b) = (*once, *twice);
-    for ((c, k), row) in c.iter().zip(k).zip(weighted.chunks_exact(nodes)) {
-        let [c, k] = [c * time, k * time];
-        if let Some(weights) = row[first..].first_chunk::<N>() {
-            for l in 0..N {
-                a[l] += c * weights[l];
-                b[l] += k * weights[l];
-            }
-        }
-    }
-    (*once, *twice) = (a, b);
-    N
 }
 
 /// Products of the rows of both tables with both loads: of the first one, then of the second. Nodes are a multiple of four.
@@ -396,5 +378,27 @@ fn write_products(rows: &[f64], load: &[f64], to: &mut [f64]) {
             }
         }
         *to = (sums[0] + sums[2]) + (sums[1] + sums[3]);
+    }
+}
+
+/// Writes sums over the points of every way, of values times kernels, and times what is left, too.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn write_sums(starts: &[usize], [c, k, left]: [&[f64]; 3], values: &[f64], to: &mut [[f64; 4]]) {
+    for (ends, to) in starts.windows(2).zip(to) {
+        let way = ends[0]..ends[1];
+        let [c, k, left, x] = [c, k, left, values].map(|of| of[way.clone()].as_chunks::<2>());
+        // Points are an even number.
+        let mut sums = [[0.0; 2]; 4];
+        let points = c.0.iter().zip(k.0).zip(left.0).zip(x.0);
+        for (((c, k), left), x) in points {
+            for l in 0..2 {
+                let [c, k] = [c[l] * x[l], k[l] * x[l]];
+                sums[0][l] += c;
+                sums[1][l] += k;
+                sums[2][l] += left[l] * c;
+                sums[3][l] += left[l] * k;
+            }
+        }
+        *to = sums.map(|sum| sum[0] + sum[1]);
     }
 }

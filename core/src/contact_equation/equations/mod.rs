@@ -40,6 +40,7 @@ pub(super) mod pass;
 pub(super) mod pass_results;
 pub(super) mod setting;
 mod sink;
+mod tables;
 mod targets;
 mod workspace;
 
@@ -247,6 +248,7 @@ impl Equations {
                 return false;
             };
             (self.values, self.configurations) = (values, configurations);
+            self.room.forget();
             self.basis = paired::basis(&self.values.linear);
         }
         self.at = value;

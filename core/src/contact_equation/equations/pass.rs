@@ -209,8 +209,9 @@ impl Pass<'_> {
         let active = &stretch.interval.active[..];
         let (loaded, derivatives) = (self.loaded(stretch), self.derivatives());
         let room = &mut *self.room;
+        let place = room.integrals_of[stretch.index];
         if !active.is_empty() {
-            room.integrals.fill(&loaded);
+            room.integrals[place].fill(&loaded);
         }
         let [_, by_phase, by_base] = &room.steady_from;
         let whole = [1.0];
@@ -225,7 +226,7 @@ impl Pass<'_> {
             },
             free: &passed.free,
             begun: [by_phase, by_base],
-            integrals: (!active.is_empty()).then_some(&room.integrals),
+            integrals: (!active.is_empty()).then(|| &room.integrals[place]),
             omega: self.omega,
             derivatives,
         };
@@ -236,7 +237,7 @@ impl Pass<'_> {
             passed.states.extend_from_slice(&self.room.y);
             return;
         }
-        self.pass_by(targets, !active.is_empty(), passed);
+        self.pass_by(stretch, targets, passed);
         for (place, active) in active.iter().enumerate() {
             self.outputs(stretch, place, active);
             self.law(stretch, place, active);
@@ -251,6 +252,7 @@ impl Pass<'_> {
         Self: 'l,
     {
         Loaded {
+            interval: stretch.index,
             values: self.values,
             nodes: stretch.interval.nodes,
             active: &stretch.interval.active,
@@ -262,16 +264,20 @@ impl Pass<'_> {
     }
 
     /// Leaves the states at the targets, and what forces did to them, for whoever looks at the motion.
-    fn pass_by(&self, targets: usize, forced: bool, passed: &mut Passed) {
+    fn pass_by(&self, stretch: &Stretch<'_>, targets: usize, passed: &mut Passed) {
         let order = self.skeleton.order;
+        let place = self.room.integrals_of[stretch.index];
+        let forced = !stretch.interval.active.is_empty();
         if forced {
-            passed.load.extend_from_slice(self.room.integrals.load());
+            passed
+                .load
+                .extend_from_slice(self.room.integrals[place].load());
         }
         for target in 0..targets {
             let states = (0..order).map(|state| self.room.targets.state(target, state));
             passed.states.extend(states);
             if forced {
-                let integrals = &self.room.integrals;
+                let integrals = &self.room.integrals[place];
                 let of = (0..order).map(|state| integrals.forced(0, state)[target]);
                 passed.forced.extend(of);
             }
@@ -389,8 +395,13 @@ impl Pass<'_> {
         if self.omega.is_some() {
             direct[direct.len() - 1] += slopes[2];
         }
-        room.integrals
-            .add_own(&loaded, 0..order / 2, [output, turned], node, own);
+        room.integrals[room.integrals_of[stretch.index]].add_own(
+            &loaded,
+            0..order / 2,
+            [output, turned],
+            node,
+            own,
+        );
         own[local] += 1.0;
     }
 
@@ -423,8 +434,13 @@ impl Pass<'_> {
                     unit_row[place.clone()].copy_from_slice(&[0.0; 2]);
                     unit_row[state] = 1.0;
                     turned[place].copy_from_slice(&d[i]);
-                    room.integrals
-                        .add_own(&loaded, r..r + 1, [unit_row, turned], target, driven);
+                    room.integrals[room.integrals_of[stretch.index]].add_own(
+                        &loaded,
+                        r..r + 1,
+                        [unit_row, turned],
+                        target,
+                        driven,
+                    );
                 }
             }
         }

@@ -11,6 +11,7 @@
 
 use super::integrals::Integrals;
 use crate::contact_equation::linear_part::block::{Pair, add, add_both, pair, times};
+use crate::contact_equation::linear_part::kernels::Found;
 use crate::contact_equation::linear_part::values::Values;
 use crate::contact_equation::linear_part::wave::turn;
 
@@ -44,6 +45,7 @@ pub(super) struct Targets {
     by_omega: Vec<f64>,
     /// `c` and `k` of every pair.
     kernels: [Vec<f64>; 2],
+    found: Found,
     /// The steady response by the phase and by the base frequency.
     steady: [Vec<f64>; 2],
     /// Waves in resonance: states, and by the time, by the phase where the interval begins, and by the base frequency.
@@ -66,6 +68,7 @@ impl Targets {
             by_to: all(),
             by_omega: all(),
             kernels: std::array::from_fn(|_| vec![0.0; order / 2 * count]),
+            found: Found::default(),
             steady: std::array::from_fn(|_| all()),
             resonant: std::array::from_fn(|_| all()),
             cosine: one(),
@@ -115,21 +118,37 @@ impl Targets {
         }
         self.add_steady(way);
         let resonant = self.add_resonant(way);
-        for (r, block) in way.values.linear.blocks.iter().enumerate() {
-            let place = r * self.count..(r + 1) * self.count;
-            let kernels = self.kernels.each_mut().map(|of| &mut of[place.clone()]);
-            let [c, k] = kernels;
-            let free = block.is_free();
-            for ((c, k), psi) in c.iter_mut().zip(k).zip(way.psi) {
-                let time = psi * way.time;
-                (*c, *k) = if free {
-                    (1.0, time)
-                } else {
-                    let kernel = block.kernel(time);
-                    (kernel.c, kernel.k)
-                };
-            }
+        self.find_kernels(way);
+        for r in 0..way.values.linear.blocks.len() {
             self.compose(way, r, resonant);
+        }
+    }
+
+    /// Kernels of all pairs: of each at all targets at once, or of all at the only target.
+    fn find_kernels(&mut self, way: &Way<'_>) {
+        let (count, linear) = (self.count, &way.values.linear);
+        let [c, k] = &mut self.kernels;
+        let found = &mut self.found;
+        if let [psi] = *way.psi {
+            linear.kernels.find(&linear.blocks, psi * way.time, found);
+            let pairs = linear.blocks.len();
+            c[..pairs].copy_from_slice(&found.c[..pairs]);
+            k[..pairs].copy_from_slice(&found.k[..pairs]);
+            return;
+        }
+        for (r, block) in linear.blocks.iter().enumerate() {
+            let place = r * count..(r + 1) * count;
+            let (c, k) = (&mut c[place.clone()], &mut k[place]);
+            if block.is_free() {
+                c.fill(1.0);
+                for (k, psi) in k.iter_mut().zip(way.psi) {
+                    *k = psi * way.time;
+                }
+            } else {
+                found.find(block, way.psi, way.time);
+                c.copy_from_slice(&found.c[..count]);
+                k.copy_from_slice(&found.k[..count]);
+            }
         }
     }
 

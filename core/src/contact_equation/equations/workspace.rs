@@ -7,6 +7,9 @@ use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::interval::Interval;
 use crate::numeric::linear::Placed;
 
+/// Numbers in tables of intervals that keep their own, at most: 16 MB.
+const KEPT: usize = 1 << 21;
+
 /// Room for a pass.
 #[derive(Debug, Default)]
 pub(in crate::contact_equation) struct Room {
@@ -16,7 +19,9 @@ pub(in crate::contact_equation) struct Room {
     pub(super) by_next: Vec<f64>,
     /// The steady response where an interval begins, with its derivatives.
     pub(super) steady_from: [Vec<f64>; 3],
-    pub(super) integrals: Integrals,
+    /// Of as many intervals with forces as there is room for, and of one at a time of the others; and which of them is that of an interval.
+    pub(super) integrals: Vec<Integrals>,
+    pub(super) integrals_of: Vec<usize>,
     pub(in crate::contact_equation) targets: Targets,
     /// Per active contact and node: gap and rate, and what they are of the states as rows.
     pub(in crate::contact_equation) outputs: Vec<Output>,
@@ -50,6 +55,13 @@ impl Room {
         self.by_next.resize(size, 0.0);
     }
 
+    /// The linear part is another one.
+    pub(super) fn forget(&mut self) {
+        for integrals in &mut self.integrals {
+            integrals.forget();
+        }
+    }
+
     pub(in crate::contact_equation) fn new(skeleton: &Skeleton) -> Self {
         let (order, columns) = (skeleton.order, skeleton.told() + 1);
         let most =
@@ -63,12 +75,14 @@ impl Room {
             order * order
         };
         let switches = skeleton.switches.len();
+        let (integrals, integrals_of) = integrals(skeleton, [nodes, forces]);
         Self {
             y: states(),
             by: Vec::new(),
             by_next: Vec::new(),
             steady_from: std::array::from_fn(|_| states()),
-            integrals: Integrals::new(order, nodes, forces),
+            integrals,
+            integrals_of,
             targets: Targets::new(order, nodes + 1),
             outputs: vec![Output::default(); forces],
             gap_rows: vec![0.0; forces * order],
@@ -89,4 +103,29 @@ impl Room {
             read_at: vec![0; switches],
         }
     }
+}
+
+/// Integrals of intervals that have so many nodes and forces at most, and which of them each has.
+fn integrals(skeleton: &Skeleton, [nodes, forces]: [usize; 2]) -> (Vec<Integrals>, Vec<usize>) {
+    let order = skeleton.order;
+    let mut own = Vec::new();
+    let mut kept = 0;
+    let mut places = Vec::with_capacity(skeleton.intervals.len());
+    for interval in &skeleton.intervals {
+        let n = interval.nodes.count();
+        let size = order * n * (n + 1);
+        let is_kept = !interval.active.is_empty() && kept + size <= KEPT;
+        places.push(is_kept.then_some(own.len()));
+        if is_kept {
+            kept += size;
+            own.push(Integrals::new(order, n, interval.forces()));
+        }
+    }
+    let shared = own.len();
+    let mut alone = skeleton.intervals.iter().zip(&places);
+    if alone.any(|(interval, place)| place.is_none() && !interval.active.is_empty()) {
+        own.push(Integrals::new(order, nodes, forces));
+    }
+    let places = places.into_iter().map(|place| place.unwrap_or(shared));
+    (own, places.collect())
 }

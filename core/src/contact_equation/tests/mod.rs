@@ -9,6 +9,7 @@ mod grazings;
 mod growing;
 mod images;
 mod jumps;
+mod kept_tables;
 mod kinks;
 mod minimal_period;
 mod modes;
