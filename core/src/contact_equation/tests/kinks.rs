@@ -91,7 +91,7 @@ fn a_rate_that_is_zero_but_for_rounding_has_no_kinks() {
     let branch = branch.run().unwrap();
     assert_eq!(branch.stopped, Stop::ReachedEnd);
     assert!(branch.points.len() < 200, "{}", branch.points.len());
-    let exact = request.by(Shooting::new().tolerance(1e-12));
+    let exact = request.by(Shooting::new().tolerance(1e-13));
     for point in branch.points.iter().step_by(9) {
         let there = exact.clone().near_orbit(&point.orbit).orbit(point.value);
         let there = there.unwrap();
