@@ -208,13 +208,16 @@ impl Beyond<'_, '_> {
                     break;
                 }
             }
+            let mut asked = f64::NAN;
             for _ in 0..LOOKS {
                 let Some(place) = self.doubtful(test) else {
                     break;
                 };
-                if !self.add_near(place) {
+                // What was found by its height may lie elsewhere, and the same place be asked for.
+                if place == asked || !self.add_near(place) {
                     break;
                 }
+                asked = place;
             }
         }
     }

@@ -19,6 +19,8 @@ pub(in crate::contact_equation) const RELOCATED: usize = 6;
 /// A step is made again shorter so often at most, where it leaps over a touch of a level where the force jumps, over a touch and a change of
 /// the order of switches, or to where no equations are found.
 pub(super) const SHORTENED: usize = 8;
+/// An error of all that is read.
+const WHOLE: f64 = 1.0;
 /// Parts of the tolerance below which fewer nodes do.
 const PLENTY: f64 = 1e-4;
 
@@ -115,6 +117,11 @@ impl ContactBranch<'_, '_> {
         }
         if read.overlooks.is_some() {
             return self.shorter_or_lost();
+        }
+        // What its first digit may be wrong by is no orbit to begin with.
+        let of_nothing = |error: f64| error.is_finite() && error > WHOLE;
+        if self.run.record.points.is_empty() && read.point.error.is_some_and(of_nothing) {
+            return Read::Lost;
         }
         self.refused = 0;
         self.shortened = 0;

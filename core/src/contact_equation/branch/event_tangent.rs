@@ -20,7 +20,7 @@ use crate::continuation::follow::CurvePoint;
 
 /// (1), and the component along what is varied; empty where the motion beside the point is not known.
 pub(super) fn of_states(equations: &mut Equations, at: &CurvePoint, periods: usize) -> Vec<f64> {
-    let step = difference_step(&at.u, &at.tangent);
+    let step = difference_step(&equations.skeleton, &at.u, &at.tangent);
     let ways = ways(&equations.skeleton, at, step);
     let mut beside = |step: f64| {
         let pairs = at.u.iter().zip(&at.tangent);

@@ -30,6 +30,7 @@ use crate::contact_equation::run::error_estimate::Screened;
 use crate::contact_equation::switches::fits::Fits;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Border, Converged, Newton, NewtonError, NewtonOptions};
+use crate::continuation::problem::Scale;
 use crate::event::EventKind;
 use crate::numeric::linear::dot;
 use crate::numeric::roots::{self, Place};
@@ -61,12 +62,13 @@ const SAME_TOUCH: f64 = 100.0;
 const TOUCHED: f64 = 4e-12;
 /// Where branches cross a multiplier is one; none is where all are farther from it than this and ten times their error.
 const FAR: f64 = 0.1;
-/// Of Newton's method with more nodes; and where a node lies beside a kink of its law that no switch is at, so that updates go to and fro across it.
+/// Of Newton's method with more nodes.
 const OPTIONS: NewtonOptions = NewtonOptions {
     tolerance: 1e-11,
     iterations: 12,
     damped: false,
 };
+/// Where a node lies beside a kink of its law that no switch is at, updates go to and fro across it. Damped ones may be half as large many times.
 const DAMPED: NewtonOptions = NewtonOptions {
     iterations: 40,
     damped: true,
@@ -280,9 +282,13 @@ impl<'c> Curve<'c> {
             row: form,
             value: dot(form, &start.u) + s,
         };
+        let begun = u.clone();
         damped_if_need_be(&mut u, |u, options| {
             newton.correct(*equations, u, border, start.scale, options)
         })?;
+        if !is_near(newton, start.scale, [&begun, &u]) {
+            return None;
+        }
         let mut tangent = vec![0.0; u.len()];
         newton.tangent(*equations, &u, &mut tangent, true);
         let size = newton.norm().length(start.scale, &tangent);
@@ -310,12 +316,20 @@ fn damped_if_need_be(
     mut solve: impl FnMut(&mut [f64], NewtonOptions) -> Result<Converged, NewtonError>,
 ) -> Option<Converged> {
     let start = u.to_vec();
-    solve(u, OPTIONS)
-        .or_else(|_| {
+    match solve(u, OPTIONS) {
+        Ok(converged) => Some(converged),
+        Err(NewtonError::Cancelled { .. }) => None,
+        Err(_) => {
             u.copy_from_slice(&start);
-            solve(u, DAMPED)
-        })
-        .ok()
+            solve(u, DAMPED).ok()
+        }
+    }
+}
+
+/// Whether an orbit is the one that it was looked for from.
+fn is_near(newton: &Newton, scale: Scale, [from, to]: [&[f64]; 2]) -> bool {
+    let moved: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
+    newton.norm().length(scale, &moved) <= FARTHEST
 }
 
 /// Where the test function vanishes along the curve of these equations, near a point of a coarser one, by (1).
@@ -509,10 +523,11 @@ fn with_more_nodes(equations: &mut Equations, mut u: Vec<f64>, square: usize) ->
         let mut there = from.rearranged(&next, &u);
         there[square] = 0.0;
         let mut newton = Newton::new(&next);
+        let (scale, begun) = (solve::scale_at(&newton, &there), there.clone());
         let solved = damped_if_need_be(&mut there, |u, options| {
             solve::with_held(&mut next, &mut newton, u, square, options)
         });
-        if solved.is_none() {
+        if solved.is_none() || !is_near(&newton, scale, [&begun, &there]) {
             break;
         }
         let value = there[there.len() - 1];

@@ -107,7 +107,7 @@ pub(super) fn along<'p>(
 
 /// (1)
 fn nearer(equations: &mut Equations, u: &[f64], tangent: &[f64], point: &Point) -> Option<f64> {
-    let step = difference_step(u, tangent);
+    let step = difference_step(&equations.skeleton, u, tangent);
     let moved: Vec<f64> = u.iter().zip(tangent).map(|(x, t)| x + step * t).collect();
     let [here, there] = [u, &moved].map(|u| {
         equations.compute(u, false);

@@ -236,9 +236,9 @@ impl Integrals {
 
     /// Writes what forces do to a state at the points of a rule, with their weights. Says whether they do anything. Where directions do not move that is
     /// what each force is there, once for all states, times what it does.
-    fn write_at_points(&mut self, of: &Loaded<'_>, place: usize, state: usize) -> bool {
+    fn write_at_points(&mut self, of: &Loaded<'_>, rule_place: usize, state: usize) -> bool {
         let (n, order) = (self.nodes, self.row.len());
-        let rule = of.nodes.rule(place);
+        let rule = of.nodes.rule(rule_place);
         let count = rule.left.len();
         self.at_points.resize(count, 0.0);
         if self.moves {
@@ -246,7 +246,7 @@ impl Integrals {
             write_products(&rule.weighted, load, &mut self.at_points);
             return true;
         }
-        let forces = &mut self.forces[place];
+        let forces = &mut self.forces[rule_place];
         if forces.is_empty() {
             forces.resize(of.active.len() * count, 0.0);
             for (active, to) in of.active.iter().zip(forces.chunks_exact_mut(count)) {

@@ -1,5 +1,5 @@
-//! What unit forces at the nodes of an interval do to the states up to every target, and kernels that this follows from. They depend on the length of
-//! the interval in time alone, and are kept as long as that stays: forces are carried over, residuals are followed by derivatives and those of one kind by
+//! What unit forces at the nodes of an interval do to the states up to every target, and kernels that this follows from. They depend on the linear part
+//! and the length of the interval in time alone, and are kept as long as these stay: forces are carried over, residuals are followed by derivatives and those of one kind by
 //! those of another at the same length.
 //!
 //! ```text

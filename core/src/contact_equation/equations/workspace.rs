@@ -1,4 +1,4 @@
-//! Room for a pass over an orbit: nothing is allocated while one is made.
+//! Room for a pass over an orbit. What is kept of an interval grows in its first passes; nothing is allocated in later ones.
 
 use super::integrals::Integrals;
 use super::targets::Targets;
@@ -7,8 +7,10 @@ use crate::contact_equation::skeleton::Skeleton;
 use crate::contact_equation::skeleton::interval::Interval;
 use crate::numeric::linear::Placed;
 
-/// Numbers in tables of intervals that keep their own, at most: 16 MB.
+/// Numbers that are kept of intervals which keep their own, at most: 16 MB.
 const KEPT: usize = 1 << 21;
+/// Of them, kernels of a pair on each way between two targets: three for every point of a rule, of which most have 16.
+const KERNELS: usize = 3 * 16;
 
 /// Room for a pass.
 #[derive(Debug, Default)]
@@ -113,7 +115,7 @@ fn integrals(skeleton: &Skeleton, [nodes, forces]: [usize; 2]) -> (Vec<Integrals
     let mut places = Vec::with_capacity(skeleton.intervals.len());
     for interval in &skeleton.intervals {
         let n = interval.nodes.count();
-        let size = order * n * (n + 1);
+        let size = order / 2 * (n + 1) * (2 * n + KERNELS);
         let is_kept = !interval.active.is_empty() && kept + size <= KEPT;
         places.push(is_kept.then_some(own.len()));
         if is_kept {

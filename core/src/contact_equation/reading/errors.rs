@@ -103,7 +103,7 @@ impl Run<'_> {
             _ => self.equations.extremes.coordinates.get()?.clone(),
         };
         let slope = at.tangent[at.tangent.len() - 1];
-        let step = difference_step(&at.u, &at.tangent);
+        let step = difference_step(&self.equations.skeleton, &at.u, &at.tangent);
         let moved = at.u.iter().zip(&at.tangent);
         let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
         let multipliers = if let Some(here) = here {

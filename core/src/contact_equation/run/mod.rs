@@ -5,6 +5,8 @@
 pub(super) mod error_estimate;
 pub(super) mod images;
 
+use std::ops::Range;
+
 use self::error_estimate::Screened;
 use super::equations::Equations;
 use super::equations::setting::Frame;
@@ -13,6 +15,7 @@ use super::orbit::gaps::{At, Gaps};
 use super::orbit::motion::Motion;
 use super::problem::{ContactProblem, RESOLUTIONS};
 use super::reading::overlooked::Sharp;
+use super::skeleton::Skeleton;
 use crate::branches::moduli::LastMap;
 use crate::branches::point::Point;
 use crate::branches::record::Record;
@@ -20,16 +23,25 @@ use crate::branches::recurrence::Recurrence;
 use crate::continuation::statistics::Statistics;
 use crate::laws::generic::scales::Scales;
 
-/// Differences along a tangent move no unknown by more than this part of it, or of one where it is less: forces may be 1e10 and gaps 1.
+/// Differences along a tangent move no unknown by more than this part of the largest of its kind: forces may be 1e10 and gaps 1.
 const DIFFERENCE: f64 = 1e-5;
+/// Nor do they go farther than this in units of the orbit.
+const FARTHEST: f64 = 1e-2;
 
 /// How far along a tangent differences go.
-pub(super) fn difference_step(u: &[f64], tangent: &[f64]) -> f64 {
-    let parts = u.iter().zip(tangent);
-    let most = parts.fold(1e-3, |most: f64, (u, t)| {
-        most.max(t.abs() / u.abs().max(1.0))
-    });
-    DIFFERENCE / most
+pub(super) fn difference_step(skeleton: &Skeleton, u: &[f64], tangent: &[f64]) -> f64 {
+    let (order, told, all) = (skeleton.order, skeleton.told(), skeleton.unknowns());
+    let largest = |of: &[f64]| of.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let part = |kind: Range<usize>| {
+        let [moved, size] = [tangent, u].map(|of| largest(&of[kind.clone()]));
+        if size > 0.0 { moved / size } else { 0.0 }
+    };
+    let kinds = [0..order, told..all, all..all + 1].map(part);
+    // Switches are phases.
+    let most = kinds
+        .into_iter()
+        .fold(largest(&tangent[order..told]), f64::max);
+    (DIFFERENCE / most).min(FARTHEST)
 }
 
 /// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,

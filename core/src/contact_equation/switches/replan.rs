@@ -57,7 +57,7 @@ impl Run<'_> {
         near: &[f64],
     ) -> Option<CurvePoint> {
         let u = self.transferred(&point.u, to, near)?;
-        let step = difference_step(&point.u, &point.tangent);
+        let step = difference_step(&self.equations.skeleton, &point.u, &point.tangent);
         let along = self.beside_touches(point, step);
         let mut beside = |step: f64| {
             let moved = point.u.iter().zip(&along);
