@@ -89,6 +89,15 @@ impl ContactBranch<'_, '_> {
         Read::TooFar
     }
 
+    /// Whether this is the first orbit, and known to no digit: that is none to begin with.
+    fn begins_with_nothing(&self, point: &Point) -> bool {
+        let is_first = self.run.record.points.is_empty();
+        is_first
+            && point
+                .error
+                .is_some_and(|error| error.is_finite() && error > WHOLE)
+    }
+
     /// What is done with an orbit that was read, by equations that fit it.
     fn decide(&mut self, at: &CurvePoint, read: ReadOrbit, fits: Fits, stuck: bool) -> Read {
         let wanted = match read.overlooks {
@@ -99,8 +108,7 @@ impl ContactBranch<'_, '_> {
         let again = !stuck && self.refused < REFUSALS;
         // As many nodes may do where panels end at the kinks of this orbit.
         let fails = self.run.excess(&read.point) > 1.0;
-        let tried = self.refused >= RELOCATED;
-        let moved = fails && again && !tried && self.run.has_moved_kinks();
+        let moved = fails && again && self.refused < RELOCATED && self.run.has_moved_kinks();
         if moved && self.prepare_at_kinks(&at.u) {
             if self.is_displaced() {
                 return Read::TooFar;
@@ -118,9 +126,7 @@ impl ContactBranch<'_, '_> {
         if read.overlooks.is_some() {
             return self.shorter_or_lost();
         }
-        // What its first digit may be wrong by is no orbit to begin with.
-        let of_nothing = |error: f64| error.is_finite() && error > WHOLE;
-        if self.run.record.points.is_empty() && read.point.error.is_some_and(of_nothing) {
+        if self.begins_with_nothing(&read.point) {
             return Read::Lost;
         }
         self.refused = 0;
