@@ -104,7 +104,6 @@ impl ContactBranch<'_, '_> {
             Some(overlooked) => overlooked.needed.unwrap_or(self.run.resolution),
             None => self.wanted(&read.point),
         };
-        let coarse = wanted > self.run.resolution;
         let again = !stuck && self.refused < REFUSALS;
         // As many nodes may do where panels end at the kinks of this orbit.
         let fails = self.run.excess(&read.point) > 1.0;
@@ -116,7 +115,7 @@ impl ContactBranch<'_, '_> {
             self.refused += 1;
             return Read::Refused;
         }
-        if coarse && again && self.prepare(&at.u, wanted) {
+        if wanted > self.run.resolution && again && self.prepare(&at.u, wanted) {
             if self.is_displaced() {
                 return Read::TooFar;
             }
