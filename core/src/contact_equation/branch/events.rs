@@ -9,7 +9,7 @@
 //!
 //! and where branches cross, so that the equations are singular, the cubic through four points around does. At a touch `H = 0` is an
 //! equation besides, (2) and (3) of [`skeleton`](crate::contact_equation::skeleton). Twice the last change of the value is the error that is stated; nodes are
-//! added four times at most. A node beside a kink of its law may change sides at every update of Newton's method, which then goes to and fro and is damped.
+//! added four times at most. A node beside a kink of its law may change sides at every update of Newton's method, which then goes back and forth and is damped.
 //!
 //! Source: Press et al. (2007), Numerical Recipes, section 9.2 (secant method) and 9.7 (damping); Berrut and Trefethen (2004), Barycentric Lagrange
 //! interpolation, section 2 (the polynomial through points).
@@ -68,7 +68,7 @@ const OPTIONS: NewtonOptions = NewtonOptions {
     iterations: 12,
     damped: false,
 };
-/// Where a node lies beside a kink of its law that no switch is at, updates go to and fro across it. Damped ones may be half as large many times.
+/// Where a node lies beside a kink of its law that no switch is at, updates go back and forth across it. Damped ones may be half as large many times.
 const DAMPED: NewtonOptions = NewtonOptions {
     iterations: 40,
     damped: true,
