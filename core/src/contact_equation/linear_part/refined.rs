@@ -14,8 +14,12 @@
 //! p_j(L_i) F_ij = -(L_i E_ij + E_ij L_j - t_j E_ij)                                                            (3)
 //! ```
 //!
+//! Of a whole matrix rounding of (1) would be as large as what is looked for, where two exponents are near to each other, as those of a rigid motion
+//! that is damped little: sums of products have twice the digits there.
+//!
 //! Source: Dongarra, Moler and Wilkinson (1983), Improving the accuracy of computed eigenvalues and eigenvectors, SIAM Journal on Numerical Analysis 20; Schulz (1933),
-//! Iterative Berechnung der reziproken Matrix, ZAMM 13 (the inverse of `S'`); (3) by the theorem of Cayley and Hamilton.
+//! Iterative Berechnung der reziproken Matrix, ZAMM 13 (the inverse of `S'`); (3) by the theorem of Cayley and Hamilton; Ogita, Rump and Oishi (2005), Accurate sum and dot product, SIAM Journal on Scientific
+//! Computing 26, algorithm 5.3.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -51,17 +55,70 @@ impl Pairs {
         None
     }
 
+    /// The same of a whole matrix: one step of (2), and the blocks once more, since rounding of `S'` moves them. `None` where two blocks
+    /// are not told apart, whose vectors may depend on each other, or where it turns far, as where they have one of two real exponents in common.
+    pub(super) fn refined_of(&self, matrix: &DMatrix<f64>) -> Option<Self> {
+        let error = self.error_of(matrix);
+        let turn = self.turn(&error);
+        // A comparison with what is no number is false.
+        let turns_little = turn.iter().all(|x| x.abs() <= TURNED);
+        if !turns_little || !self.are_apart() {
+            return None;
+        }
+        let to = &self.to + &self.to * &turn;
+        let from = &self.from - &turn * &self.from;
+        let one = DMatrix::identity(to.nrows(), to.nrows());
+        let rest = difference([&one, &one], [&to, &from]);
+        let turned = Self {
+            blocks: self.blocks_with(&error),
+            from: &from + &from * rest,
+            to,
+        };
+        Some(Self {
+            blocks: turned.blocks_with(&turned.error_of(matrix)),
+            ..turned
+        })
+    }
+
+    /// Whether (3) tells every two blocks apart.
+    fn are_apart(&self) -> bool {
+        let blocks = || self.blocks.iter().enumerate();
+        let nothing = [[0.0; 2]; 2];
+        blocks().all(|(i, of)| {
+            let mut others = blocks().filter(|(j, _)| *j != i);
+            others.all(|(_, other)| solved([of, other], nothing).is_some())
+        })
+    }
+
+    /// `E` of a whole matrix.
+    fn error_of(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut own = DMatrix::zeros(matrix.nrows(), matrix.ncols());
+        for (i, block) in self.blocks.iter().enumerate() {
+            for (k, row) in block.matrix.into_iter().enumerate() {
+                for (l, x) in row.into_iter().enumerate() {
+                    own[(2 * i + k, 2 * i + l)] = x;
+                }
+            }
+        }
+        &self.from * difference([matrix, &self.to], [&self.to, &own])
+    }
+
+    /// `L'`
+    fn blocks_with(&self, error: &DMatrix<f64>) -> Vec<Block> {
+        let blocks = self.blocks.iter().enumerate();
+        let blocks = blocks.map(|(i, block)| Block::new(sum(block.matrix, entries(error, i, i))));
+        blocks.collect()
+    }
+
     /// One step of (2), and the largest entry that it turns by.
     fn step(&self, own: &[Block], products: &[[DVector<f64>; 2]]) -> (Self, f64) {
         let error = &self.from * self.left(own, products);
-        let blocks = self.blocks.iter().enumerate();
-        let blocks = blocks.map(|(i, block)| Block::new(sum(block.matrix, entries(&error, i, i))));
         let turn = self.turn(&error);
         let to = &self.to + &self.to * &turn;
         let from = &self.from - &turn * &self.from;
         let rest = DMatrix::identity(to.nrows(), to.nrows()) - &to * &from;
         let found = Self {
-            blocks: blocks.collect(),
+            blocks: self.blocks_with(&error),
             from: &from + &from * rest,
             to,
         };
@@ -134,6 +191,23 @@ fn solved([of, other]: [&Block; 2], error: Square) -> Option<Square> {
     }
     let inverse = [[-s / whole, q / whole], [r / whole, -p / whole]];
     Some(product(inverse, known))
+}
+
+/// `A B - C D`, summed with twice the digits.
+fn difference([a, b]: [&DMatrix<f64>; 2], [c, d]: [&DMatrix<f64>; 2]) -> DMatrix<f64> {
+    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
+        let products = (0..a.ncols()).map(|l| (a[(i, l)], b[(l, j)]));
+        let others = (0..c.ncols()).map(|l| (-c[(i, l)], d[(l, j)]));
+        let (mut high, mut low) = (0.0_f64, 0.0);
+        for (x, y) in products.chain(others) {
+            let product = x * y;
+            let sum = high + product;
+            let added = sum - high;
+            low += (high - (sum - added)) + (product - added) + x.mul_add(y, -product);
+            high = sum;
+        }
+        high + low
+    })
 }
 
 fn sum(a: Square, b: Square) -> Square {

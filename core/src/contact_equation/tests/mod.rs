@@ -17,6 +17,7 @@ mod moving_stiffness;
 mod narrow;
 mod order;
 mod outputs;
+mod rigid;
 mod ringing;
 mod several;
 mod symmetry;
