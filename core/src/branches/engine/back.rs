@@ -2,6 +2,7 @@
 
 use super::Engine;
 use super::seen::{Former, Seen};
+use super::walk::Asked;
 use crate::branches::problem::BranchProblem;
 use crate::continuation::follow::{CurvePoint, Halted, Step, Stop};
 use crate::continuation::newton::NewtonError;
@@ -37,10 +38,30 @@ impl Engine {
             };
             let norm = Norm::of(problem.equations());
             let length = norm.length(before.scale, &step.difference());
-            self.back = Some((before, SHORTER * length));
+            if self.shortest_asked(problem) < self.options.steps.smallest {
+                return false;
+            }
+            self.ask_again(problem, before, SHORTER * length);
             self.refused = false;
         }
         true
+    }
+
+    /// Has the walk go back to the point before the last one, for a shorter step from there; one that is shorter than the last that was asked for from there,
+    /// too. Beside a corner an orbit far away may be behind a step however short.
+    pub(super) fn ask_again(&mut self, problem: &dyn BranchProblem, before: CurvePoint, step: f64) {
+        let step = step.min(SHORTER * self.shortest_asked(problem));
+        self.asked = Some(Asked {
+            points: problem.points(),
+            step,
+        });
+        self.back = Some((before, step));
+    }
+
+    /// The shortest step that was asked for behind as many points; infinite where none was.
+    pub(super) fn shortest_asked(&self, problem: &dyn BranchProblem) -> f64 {
+        let asked = self.asked.filter(|asked| asked.points == problem.points());
+        asked.map_or(f64::INFINITY, |asked| asked.step)
     }
 
     /// After a change of unknowns, of the points before it only the one to go on from is known in them; of the one before that, its multipliers.

@@ -168,9 +168,9 @@ impl Engine {
         let passed = self.pass(problem, &before, &through);
         let jumps = through.iter().any(|(_, extreme)| extreme.jumps);
         let shortest = if jumps { SHORTEST_AGAIN } else { SHORTEST };
-        if !passed && length > shortest {
+        if !passed && length.min(self.shortest_asked(problem)) > shortest {
             // Another limb, or a touch that is too far to be found from here.
-            self.back = Some((before, AGAIN * length));
+            self.ask_again(problem, before, AGAIN * length);
         }
         passed || self.back.is_some()
     }

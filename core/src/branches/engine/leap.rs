@@ -64,15 +64,16 @@ impl Engine {
         if problem.force_jumps() && !is_apart {
             return false;
         }
-        if length > SHORTEST
+        let is_long = length.min(self.shortest_asked(problem)) > SHORTEST;
+        if is_long
             && !through.iter().any(is_corner)
             && self.jumps(problem, &mut newton, next, through.is_empty())
         {
             problem.count(&newton);
-            self.back = Some((before, AGAIN * length));
+            self.ask_again(problem, before, AGAIN * length);
             return true;
         }
-        let in_doubt = length > SHORTEST
+        let in_doubt = is_long
             && same_way
             && match &through[..] {
                 [] => false,
@@ -92,7 +93,7 @@ impl Engine {
         };
         problem.count(&newton);
         if leaps {
-            self.back = Some((before, AGAIN * length));
+            self.ask_again(problem, before, AGAIN * length);
         }
         leaps
     }

@@ -59,7 +59,7 @@ use grazing::Gaps;
 use joint::Joint;
 use seen::{Crossed, Former, Seen, changes, is_modulus};
 use step_parts::distance;
-use walk::Looked;
+use walk::{Asked, Looked};
 pub(crate) use walk::{Places, Walk};
 use zero::Recorded;
 pub(crate) use zero::{Aim, Search, is_crossing, root};
@@ -112,6 +112,8 @@ struct Engine {
     behind: Option<Seen>,
     /// The point before the last one, to go on from in a step of this length, since the last one is not the next on the branch.
     back: Option<(CurvePoint, f64)>,
+    /// The step that was made again last.
+    asked: Option<Asked>,
     /// The branch point that the last step passed, which is made again.
     joint: Option<Joint>,
     /// Where the branch ends within a step, and the number of points before that.
@@ -273,6 +275,7 @@ impl Engine {
             passed: None,
             behind: None,
             back: None,
+            asked: None,
             joint: None,
             end: None,
             gaps: Vec::new(),

@@ -47,6 +47,9 @@ pub(crate) struct Walk {
     /// The branch point that the last step passed.
     #[cfg_attr(feature = "serde", serde(default))]
     joint: Option<Joint>,
+    /// A step that was made again from there, and how short.
+    #[cfg_attr(feature = "serde", serde(default))]
+    asked: Option<Asked>,
     /// What the branch had then.
     pub(crate) kept: Places,
 }
@@ -60,6 +63,23 @@ pub(super) struct Looked {
     /// How far ahead.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) step: f64,
+}
+
+/// A step that was to be made again, shorter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Asked {
+    /// Number of points before it.
+    pub(super) points: usize,
+    /// The length that was asked for last.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub(super) step: f64,
+}
+
+impl Asked {
+    fn is_possible(&self) -> bool {
+        self.step.is_finite() && self.step > 0.0
+    }
 }
 
 /// What a branch had at some time: so many points, and the events and turns at these places.
@@ -121,6 +141,7 @@ impl Walk {
             && self.crossed.iter().all(Crossed::is_possible)
             && self.bent.iter().all(Bent::is_possible)
             && self.joint.as_ref().is_none_or(Joint::is_possible)
+            && self.asked.as_ref().is_none_or(Asked::is_possible)
             && self.halted.is_possible()
             && self.contraction.is_finite()
             && self.way.is_finite()
@@ -163,6 +184,7 @@ impl Engine {
             crossed: self.crossed.clone(),
             bent: self.bent.clone(),
             joint: self.joint.clone(),
+            asked: self.asked,
             kept: Places::all(kept),
         }
     }
@@ -183,6 +205,7 @@ impl Engine {
             crossed: walk.crossed,
             bent: walk.bent,
             joint: walk.joint,
+            asked: walk.asked,
             ..Self::new(options)
         };
         (engine, walk.halted, walk.contraction)

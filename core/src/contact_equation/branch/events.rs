@@ -56,8 +56,8 @@ const NEARER: usize = 6;
 const SAFETY: f64 = 2.0;
 /// What rounding leaves in a value, for each period that a motion is carried over.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
-/// More nodes move a touch by so many times its error before at most; farther away there is another one.
-const SAME_TOUCH: f64 = 100.0;
+/// More nodes move an event by so many times its error before at most; farther away there is another one.
+const SAME: f64 = 100.0;
 /// What rounding leaves in the value of a touch.
 const TOUCHED: f64 = 4e-12;
 /// Where branches cross a multiplier is one; none is where all are farther from it than this and ten times their error.
@@ -103,15 +103,20 @@ pub(in crate::contact_equation) fn event(
     } else {
         located_again(run, at, test, again)
     };
-    let Some(mut again) = again else {
+    let ways = step.parameters().map(|end| (end - at.parameter()).abs());
+    let way = ways[0].max(ways[1]);
+    // Farther away than the step it is another one.
+    let is_same = |again: &Again| {
+        let moved = (again.point.parameter() - at.parameter()).abs();
+        moved <= way + SAME * event.error
+    };
+    let Some(mut again) = again.filter(is_same) else {
         let finer = read.finer.as_ref().map(|map| {
             let there = Tests::of(Some(map), at.parameter_slope()).value(test);
             there.abs() / zero.steepness
         });
-        let value = at.parameter();
-        let ways = step.parameters().map(|end| (end - value).abs());
         // Equations with more nodes lead to none between both ends: it is said where that is, and is no event.
-        if !crosses && finer.is_some_and(|moved| moved > ways[0].max(ways[1])) {
+        if !crosses && finer.is_some_and(|moved| moved > way) {
             return None;
         }
         event.error = match finer {
@@ -357,7 +362,8 @@ fn again(
             break;
         }
     }
-    Some((best, f1, 0.0))
+    // Where the test function jumps instead, the last two places may be anywhere.
+    (f1.abs() <= VANISHED || (x1 - x0).abs() <= APART).then_some((best, f1, 0.0))
 }
 
 /// The same where branches cross: the equations are singular there, and are solved at four points around, whose cubic has the zero and the
@@ -480,7 +486,7 @@ fn keep_touch(run: &mut Run<'_>, touch: &Touch, at: &CurvePoint) {
     }) = finer.filter(|found| {
         // Farther away it is another touch.
         let apart = (found.u[found.u.len() - 1] - at.parameter()).abs();
-        apart <= SAME_TOUCH * error
+        apart <= SAME * error
     }) {
         error = SAFETY * changed;
         equations.compute(&u, false);

@@ -73,6 +73,24 @@ impl Grading {
         0.5 * self.unit * power(t, p - 1) * power(s, q - 1)
     }
 
+    /// The inverse as the power at the nearer end has it.
+    fn guess(&self, psi: f64) -> f64 {
+        let side = usize::from(psi > 0.5);
+        let way = if side == 0 { psi } else { 1.0 - psi };
+        let part = way / self.coefficients[side][0];
+        let t = match self.powers[side] {
+            1 => part,
+            2 => part.sqrt(),
+            _ => part.cbrt(),
+        };
+        let t = t.min(0.5);
+        if side == 0 {
+            2.0 * t - 1.0
+        } else {
+            1.0 - 2.0 * t
+        }
+    }
+
     /// By Newton's method between bounds.
     pub(in crate::contact_equation) fn inverse(&self, psi: f64) -> f64 {
         if self.powers == [1, 1] {
@@ -80,7 +98,7 @@ impl Grading {
         }
         let psi = psi.clamp(0.0, 1.0);
         let (mut below, mut above) = (-1.0, 1.0);
-        let mut y = 2.0 * psi - 1.0;
+        let mut y = self.guess(psi);
         for _ in 0..STEPS {
             let excess = self.psi(y) - psi;
             if excess == 0.0 {

@@ -23,6 +23,8 @@
 use std::ops::Range;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+use multiversion::multiversion;
+
 use super::grading::{Grading, STEEPEST, power_with};
 use super::partway::Partway;
 use crate::numeric::fourier::gauss;
@@ -39,10 +41,10 @@ const _: () = {
 };
 /// Points of the rules between two targets, and up to which angle of a kernel on the way each serves: polynomials through nodes turn by half of a period
 /// there, and with `n` points what is left of a wave that turns by `T` is as large as the Bessel function `J_2n(T / 2)`.
-const POINTS: [usize; RULES] = [12, 16, 20, 24, 32, 48];
-const TURNS: [f64; RULES] = [3.0, 8.0, 13.0, 18.0, 30.0, 90.0];
+const POINTS: [usize; RULES] = [10, 12, 14, 16, 18, 24, 32, 48];
+const TURNS: [f64; RULES] = [2.5, 5.5, 9.5, 13.0, 18.0, 30.0, 56.0, 90.0];
 /// How many rules there are.
-pub(in crate::contact_equation) const RULES: usize = 6;
+pub(in crate::contact_equation) const RULES: usize = 8;
 /// The largest power of which polynomials stand for the force itself.
 const PLAIN_POWER: usize = 2;
 /// Points of the rule for (2).
@@ -293,10 +295,7 @@ impl Nodes {
         let sign = if n.is_multiple_of(2) { -1.0 } else { 1.0 };
         // P_n(-1) = (-1)^n, and the derivative of y^2 - 1 is -2 there.
         let mut sum = 1.0 / (2.0 * (y + 1.0));
-        for ((weight, node), inner) in weights.iter_mut().zip(&self.y).zip(&self.inner) {
-            *weight = inner / (y - node);
-            sum += *weight;
-        }
+        sum += weigh(y, &self.y, &self.inner, weights);
         weights[n] = sign / (2.0 * (y - 1.0));
         sum += weights[n];
         let per = 1.0 / sum;
@@ -323,8 +322,8 @@ impl Nodes {
         let known = rule.done.map_or(0.0, |target| self.targets[target]);
         rule.left = psi - known;
         rule.points.clear();
-        rule.values.clear();
         if done > n || psi <= known {
+            rule.values.clear();
             return;
         }
         let from = rule.done.map_or(-1.0, |target| self.y[target]);
@@ -336,8 +335,10 @@ impl Nodes {
         for ((s, w), values) in gauss.nodes.iter().zip(&gauss.weights).zip(rows) {
             let y = from + length * s;
             self.polynomials_at(y, values);
-            for (value, slope) in values.iter_mut().zip(&self.slopes) {
-                *value *= slope;
+            if self.steep {
+                for (value, slope) in values.iter_mut().zip(&self.slopes) {
+                    *value *= slope;
+                }
             }
             let weight = w * length * self.left_of_slope(y);
             rule.points.push([psi - self.map.psi(y), weight]);
@@ -439,20 +440,33 @@ impl Nodes {
 
     /// Writes every polynomial at a `y`, and beyond the ends too.
     fn polynomials_at(&self, y: f64, values: &mut [f64]) {
-        if let Some(node) = self.y.iter().position(|node| *node == y) {
-            values.fill(0.0);
-            values[node] = 1.0;
+        let per = 1.0 / weigh(y, &self.y, &self.barycentric, values);
+        if per == 0.0 || per.is_nan() {
+            // At a node, or so near that its weight is no number.
+            let near = |node: &f64| (*node - y).abs() <= f64::MIN_POSITIVE;
+            for (value, node) in values.iter_mut().zip(&self.y) {
+                *value = f64::from(u8::from(near(node)));
+            }
             return;
         }
-        let mut sum = 0.0;
-        for ((value, node), weight) in values.iter_mut().zip(&self.y).zip(&self.barycentric) {
-            *value = weight / (y - node);
-            sum += *value;
-        }
         for value in values {
-            *value /= sum;
+            *value *= per;
         }
     }
+}
+
+/// Writes weights by the ways from their nodes, and returns the sum of these. Nodes are a multiple of four.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn weigh(y: f64, nodes: &[f64], weights: &[f64], to: &mut [f64]) -> f64 {
+    let (nodes, weights) = (nodes.as_chunks::<4>().0, weights.as_chunks::<4>().0);
+    let mut sums = [0.0; 4];
+    for ((to, node), weight) in to.as_chunks_mut::<4>().0.iter_mut().zip(nodes).zip(weights) {
+        for l in 0..4 {
+            to[l] = weight[l] / (y - node[l]);
+            sums[l] += to[l];
+        }
+    }
+    (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
 /// The place of the rule that serves a kernel which turns by this angle, or decays by so many powers of `e`, on a way.

@@ -23,6 +23,19 @@ const WHOLE: f64 = 6_755_399_441_055_744.0;
 const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
 /// Exponents farther from zero than this are taken for it: `e^-700` is as good as nothing, and no orbit has what grows by `e^700`.
 const FARTHEST: f64 = 700.0;
+/// Exponents up to which a series of degree seven has all digits.
+const NEAR: f64 = 1.0 / 32.0;
+/// What a series in nested form is divided by.
+const PER_DEGREE: [f64; 8] = [
+    1.0,
+    1.0,
+    1.0 / 2.0,
+    1.0 / 3.0,
+    1.0 / 4.0,
+    1.0 / 5.0,
+    1.0 / 6.0,
+    1.0 / 7.0,
+];
 /// Fewer blocks are taken one by one.
 const FEW: usize = 3;
 
@@ -106,7 +119,15 @@ impl Found {
         }
         sines_and_cosines(&self.angles, &mut self.k, &mut self.c);
         let factors = [block.mean() / root, 1.0 / root];
-        decay_by_angle(&self.angles, factors, [&mut self.c, &mut self.k]);
+        let farthest = parts
+            .iter()
+            .fold(0.0, |most: f64, part| most.max(part.abs()));
+        let tables = [&mut self.c[..], &mut self.k[..]];
+        if (block.mean() * time).abs() * farthest <= NEAR {
+            decay_little(&self.angles, factors, tables);
+        } else {
+            decay_by_angle(&self.angles, factors, tables);
+        }
     }
 
     /// That of a block.
@@ -142,6 +163,25 @@ fn decay_by_angle(angles: &[f64], [mean, per_root]: [f64; 2], [c, k]: [&mut [f64
     let (k, _) = k.as_chunks_mut::<LANES>();
     for ((angles, c), k) in angles.iter().zip(c).zip(k) {
         let decay = powers(&angles.map(|angle| mean * angle));
+        for j in 0..LANES {
+            c[j] *= decay[j];
+            k[j] *= decay[j] * per_root;
+        }
+    }
+}
+
+/// The same where exponents are near zero.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn decay_little(angles: &[f64], [mean, per_root]: [f64; 2], [c, k]: [&mut [f64]; 2]) {
+    let (angles, _) = angles.as_chunks::<LANES>();
+    let (c, _) = c.as_chunks_mut::<LANES>();
+    let (k, _) = k.as_chunks_mut::<LANES>();
+    for ((angles, c), k) in angles.iter().zip(c).zip(k) {
+        let x = angles.map(|angle| mean * angle);
+        let mut decay = [1.0; LANES];
+        for degree in (1..=7).rev() {
+            decay = lanes(|j| 1.0 + x[j] * PER_DEGREE[degree] * decay[j]);
+        }
         for j in 0..LANES {
             c[j] *= decay[j];
             k[j] *= decay[j] * per_root;

@@ -27,6 +27,7 @@ mod meeting;
 mod mirrored;
 mod narrow;
 mod preloads;
+mod sticky;
 mod symmetry;
 mod table;
 mod torus;

@@ -6,7 +6,7 @@ use hertzian::{Branch, Point, Stability, Verdict};
 
 use crate::differential::integrate::Lost;
 use crate::differential::judge::Case;
-use crate::differential::model::{COORDINATES, State};
+use crate::differential::model::{COORDINATES, Model, State};
 use crate::differential::report::Kind;
 use crate::differential::truth::{Question, Truth, Unsure};
 
@@ -14,6 +14,8 @@ use crate::differential::truth::{Question, Truth, Unsure};
 const ORBITS: [usize; 2] = [3, 1];
 /// How far from the true orbit a state may be, relative to the size.
 const NEAR: f64 = 1e-2;
+/// A motion from a state is lost where the rounding of the state grows to this part of it within the period.
+const LOST: f64 = 1e-4;
 
 impl Case {
     /// Some points: anywhere, and an unstable one.
@@ -43,14 +45,7 @@ impl Case {
             let size = motions.fold(0.0, |size: f64, m| size.max(0.5 * m.peak_to_peak()));
             let name = format!("balance at {:?}", point.value);
             let question = Question::of(&model, point.value, point.orbit.period, size);
-            let state = |part: f64| {
-                let mut state = State::default();
-                for i in 0..model.coordinates {
-                    let time = part * question.time;
-                    (state[i], state[COORDINATES + i]) = point.orbit.state_at(i, time).unwrap();
-                }
-                Ok(state)
-            };
+            let state = |part: f64| Ok(state_at(&model, point, part * question.time));
             self.point(&name, &question, state, point);
         }
     }
@@ -61,16 +56,23 @@ impl Case {
         let model = Rc::clone(&self.model);
         for index in self.chosen(&verdicts, ORBITS[1]) {
             let cycle = &branch.points[index];
-            let mut state = State::default();
-            let first = cycle.orbit.state();
-            let (positions, velocities) = first.split_at(model.coordinates);
-            state[..positions.len()].copy_from_slice(positions);
-            state[COORDINATES..][..velocities.len()].copy_from_slice(velocities);
+            let mut first = State::default();
+            let start = cycle.orbit.state();
+            let (positions, velocities) = start.split_at(model.coordinates);
+            first[..positions.len()].copy_from_slice(positions);
+            first[COORDINATES..][..velocities.len()].copy_from_slice(velocities);
             let extremes = cycle.observed.motions.iter();
             let size = extremes.fold(0.0, |size: f64, e| size.max(0.5 * e.peak_to_peak()));
             let name = format!("{method} at {:?}", cycle.value);
             let question = Question::of(&model, cycle.value, cycle.orbit.period, size);
-            let state = |part: f64| question.after(&state, part);
+            // From a state that is exact to all digits a motion is lost within a period of such a multiplier; that of the orbit is not.
+            let largest = cycle.stability.multipliers.first();
+            let is_lost = largest.is_some_and(|m| m.norm() * f64::EPSILON > LOST);
+            let completed = is_lost.then(|| branch.complete(cycle).ok()).flatten();
+            let state = |part: f64| match &completed {
+                Some(point) => Ok(state_at(&model, point, part * question.time)),
+                None => question.after(&first, part),
+            };
             self.point(&name, &question, state, cycle);
         }
     }
@@ -214,4 +216,13 @@ impl Case {
         }
         self.report.ratio(of, ratio);
     }
+}
+
+/// The state at a time, by the series of an orbit.
+fn state_at(model: &Model, point: &Point, time: f64) -> State {
+    let mut state = State::default();
+    for i in 0..model.coordinates {
+        (state[i], state[COORDINATES + i]) = point.orbit.state_at(i, time).unwrap();
+    }
+    state
 }

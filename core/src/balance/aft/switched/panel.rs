@@ -5,6 +5,15 @@
 //! the force and every derivative, whatever the exponents.
 //!
 //! How many nodes suffice, [`spectrum`](super::spectrum) tells. Where there is no rule with that number, the panel is cut in two.
+//!
+//! A sum of harmonics `c_k` is rounded by about `e S`, `S = sum |c_k|`, with the unit roundoff `e`. Where the gap goes no farther
+//! beyond its level than `h`, the force has a rounding of
+//!
+//! ```text
+//! |phi| e S / h  +  |phi_r| e sum k |c_k|                                                                     (1)
+//! ```
+//!
+//! and no rule has to see what is smaller: on a contact as short as that the halves of a part are as rough as the part.
 
 use super::cut::{End, Panel};
 use super::spectrum::Spectrum;
@@ -28,6 +37,8 @@ const FORCE_ERROR: f64 = 1e-15;
 const SLOPE_ERROR: f64 = 1e-11;
 /// Halvings of a panel, at most.
 const DEPTH: u32 = 12;
+/// Rounding of a sum of harmonics, in parts of the sum of their sizes.
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
 /// Workspace for the nodes of one panel, and the graded rules met so far.
 #[derive(Debug, Default)]
@@ -45,6 +56,10 @@ pub(super) struct Quadrature {
     /// The rule in use, and the levels at the ends of the panel.
     current: usize,
     levels: [Option<f64>; 2],
+    /// The same with those that the gap only comes near.
+    nearest: [Option<f64>; 2],
+    /// Rounding of gap and rate.
+    rounding: [f64; 2],
     /// The phases while they are rotated.
     rotated: [Vec<f64>; 2],
     /// Multiplications so far, about.
@@ -118,6 +133,13 @@ impl Quadrature {
             End::Near(_) | End::Period => None,
         };
         self.levels = [level(panel.from), level(panel.to)];
+        let near = |end| match end {
+            End::Level(index) | End::Near(index) => Some(levels[index]),
+            End::Period => None,
+        };
+        self.nearest = [near(panel.from), near(panel.to)];
+        let sizes = |of: &[f64]| of.iter().map(|c| c.abs()).sum::<f64>();
+        self.rounding = [input.gap, input.rate].map(|of| ROUNDING * sizes(of));
         let top = sums.slopes.as_ref().map_or(sums.force.len(), |slopes| {
             slopes.by_gap.len().max(sums.force.len())
         }) / 2;
@@ -197,10 +219,13 @@ impl Quadrature {
         let (width, degrees) = (part.end - part.start, part.degrees());
         let mut spectra = [Spectrum::UNKNOWN; 4];
         let mut most = 0.0_f64;
+        let rounding = self.rounding_on(piece, sums.slopes.is_some());
         let mut look = |which: usize, values: &[f64], harmonics: f64, error: f64| {
             let parent = part.spectra[which];
             let spectrum = Spectrum::of(values, &rule.slopes, rule.plain, width, parent);
-            most = most.max(spectrum.nodes(parent, degrees * harmonics, error));
+            if !spectrum.is_within(rounding) {
+                most = most.max(spectrum.nodes(parent, degrees * harmonics, error));
+            }
             spectra[which] = spectrum;
         };
         look(0, &self.force, demand.force, FORCE_ERROR);
@@ -214,6 +239,29 @@ impl Quadrature {
             }
         }
         (most, spectra)
+    }
+
+    /// Rounding of the force at the nodes by (1), in parts of the largest there; that by the rate where slopes are known.
+    fn rounding_on(&self, piece: &PieceFacts, with_slopes: bool) -> f64 {
+        let count = self.rules[self.current].count;
+        let largest = |of: &[f64]| of[..count].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let beyond = |gap: &f64| {
+            let ways = self
+                .nearest
+                .iter()
+                .flatten()
+                .map(|level| (gap - level).abs());
+            ways.fold(f64::INFINITY, f64::min)
+        };
+        let farthest = self.gap[..count].iter().map(beyond).fold(0.0, f64::max);
+        let [gap, rate] = self.rounding;
+        let by_gap = gap / farthest;
+        let by_rate = if with_slopes && piece.by_rate != Variation::Zero {
+            largest(&self.by_rate) * rate / largest(&self.force)
+        } else {
+            0.0
+        };
+        by_gap + by_rate
     }
 
     /// Puts nodes on a part of a panel.

@@ -28,6 +28,8 @@ const FALLEN: f64 = 0.36;
 pub(super) struct Spectrum {
     /// The largest of the highest coefficients.
     highest: f64,
+    /// The largest value there.
+    here: f64,
     /// The largest value, there or on the parts that it is a part of.
     size: f64,
     /// Their degree.
@@ -38,6 +40,7 @@ impl Spectrum {
     /// Of what has not been looked at.
     pub(super) const UNKNOWN: Self = Self {
         highest: f64::INFINITY,
+        here: 0.0,
         size: 0.0,
         degree: 0.0,
     };
@@ -62,6 +65,7 @@ impl Spectrum {
         let highest = sums.iter().fold(0.0_f64, |m, sum| m.max(sum.abs()));
         Self {
             highest: width * highest,
+            here: width * largest,
             size: parent.size.max(width * largest),
             degree: rule.nodes.len() as f64 - 2.0,
         }
@@ -80,6 +84,11 @@ impl Spectrum {
         } else {
             f64::INFINITY
         }
+    }
+
+    /// Whether the coefficients are no larger than a rounding of the values, in parts of the largest.
+    pub(super) fn is_within(self, rounding: f64) -> bool {
+        self.highest <= rounding * self.here
     }
 
     /// Whether coefficients that were small before the part was halved have not fallen since, compared at one degree.
@@ -125,6 +134,16 @@ mod tests {
         let whole = on(12, 1.0, unknown, smooth);
         let half = on(12, 0.5, whole, smooth);
         assert!(half.nodes(whole, 0.0, 1e-15) > 12.0);
+    }
+
+    #[test]
+    fn what_values_are_rounded_by_is_within_their_rounding() {
+        for size in [1e-12, 1e-6, 0.1] {
+            let noise = |x: f64| size * (1e9 * x + 1.0).sin();
+            let found = on(24, 0.5, Spectrum::UNKNOWN, |x| 1.0 + noise(x));
+            assert!(found.is_within(size), "{size}");
+            assert!(!found.is_within(1e-3 * size), "{size}");
+        }
     }
 
     #[test]
