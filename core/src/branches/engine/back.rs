@@ -4,7 +4,7 @@ use super::Engine;
 use super::seen::{Former, Seen};
 use super::walk::Asked;
 use crate::branches::problem::BranchProblem;
-use crate::continuation::follow::{CurvePoint, Halted, Step, Stop};
+use crate::continuation::follow::{CurvePoint, Halted, Start, Step, Stop};
 use crate::continuation::newton::NewtonError;
 use crate::continuation::problem::Norm;
 
@@ -45,6 +45,29 @@ impl Engine {
             self.refused = false;
         }
         true
+    }
+
+    /// A point that was refused, and is none in other unknowns either, may be none at all: from the one before it, for a shorter step.
+    pub(super) fn before_refused(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        begun: &Start,
+    ) -> Option<Start> {
+        let halted = begun.halted().filter(|_| self.refused)?;
+        let before = halted.previous.as_ref()?;
+        if self.shortest_asked(problem) < self.options.steps.smallest {
+            return None;
+        }
+        let step = Step {
+            before,
+            next: &halted.point,
+        };
+        let norm = Norm::of(problem.equations());
+        let length = norm.length(before.scale, &step.difference());
+        self.ask_again(problem, before.clone(), SHORTER * length);
+        self.refused = false;
+        let (point, step) = self.back.take()?;
+        Some(Start::At(Box::new(halted.clone().back_to(point, step))))
     }
 
     /// Has the walk go back to the point before the last one, for a shorter step from there; one that is shorter than the last that was asked for from there,

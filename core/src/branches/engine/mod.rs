@@ -227,7 +227,11 @@ fn go_on(
             Err(_) if problem.couple_fully() => begun,
             Err(reason) => {
                 let Some(halted) = last.take() else {
-                    return engine.stranded(problem, &begun, reason);
+                    let Some(shorter) = engine.before_refused(problem, &begun) else {
+                        return engine.stranded(problem, &begun, reason);
+                    };
+                    start = shorter;
+                    continue;
                 };
                 // What was found with the former unknowns stands.
                 problem.revert();

@@ -1,5 +1,7 @@
 //! A contact that begins where the branch turns back: behind the touch the force grows as a power of 0.54 of the gap, and steps to it lead far away.
 
+use std::ops::ControlFlow;
+
 use hertzian::{
     Branch, ContactEquation, Error, EventKind, FrequencyResponse, HarmonicBalance, OrbitMethod,
 };
@@ -18,11 +20,14 @@ hertzian::oscillator! {
     }
 }
 
+/// From the beginning of the range to 2.19, behind both turns.
 fn by(method: impl OrbitMethod) -> Result<Branch, Error> {
-    let request = FrequencyResponse::of(&Sticky {})
-        .from(2.181_422_586_288_869)
-        .to(2.1872);
-    request.by(method).run()
+    let request = FrequencyResponse::of(&Sticky {}).from(2.181_422_586_288_869);
+    let request = request.to(3.464_186_347_962_882_3).by(method);
+    request.run_with(|progress| match progress.value {
+        Some(value) if value > 2.19 => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    })
 }
 
 /// Where the branch turns, with the errors.
