@@ -141,7 +141,8 @@ mod tests {
         for size in [1e-12, 1e-6, 0.1] {
             let noise = |x: f64| size * (1e9 * x + 1.0).sin();
             let found = on(24, 0.5, Spectrum::UNKNOWN, |x| 1.0 + noise(x));
-            assert!(found.is_within(size), "{size}");
+            // Each coefficient of noise is as large as that, the largest of some a few times.
+            assert!(found.is_within(4.0 * size), "{size}");
             assert!(!found.is_within(1e-3 * size), "{size}");
         }
     }
