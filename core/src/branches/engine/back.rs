@@ -10,6 +10,8 @@ use crate::continuation::problem::Norm;
 
 /// A step that went too far is made again with this part of its length.
 const SHORTER: f64 = 0.3;
+/// Of the step that was asked for last from the same point, the next one is this part at most.
+const AT_MOST: f64 = 0.5;
 /// A gap that would turn at this height beyond its level, in units of half of its range, does not pass it.
 pub(crate) const STOPPED: f64 = 1e-12;
 
@@ -47,12 +49,24 @@ impl Engine {
         true
     }
 
-    /// A point that was refused, and is none in other unknowns either, may be none at all: from the one before it, for a shorter step.
-    pub(super) fn before_refused(
+    /// From where the walk goes on that leads nowhere in these unknowns: from the same point in those that it had, or from the one before.
+    pub(super) fn reverted(
         &mut self,
         problem: &mut dyn BranchProblem,
         begun: &Start,
+        last: Option<Box<Halted>>,
     ) -> Option<Start> {
+        let Some(halted) = last else {
+            return self.before_refused(problem, begun);
+        };
+        // What was found with the former unknowns stands.
+        problem.revert();
+        self.displaced = None;
+        Some(Start::At(halted))
+    }
+
+    /// A point that was refused, and is none in other unknowns either, may be none at all: from the one before it, for a shorter step.
+    fn before_refused(&mut self, problem: &mut dyn BranchProblem, begun: &Start) -> Option<Start> {
         let halted = begun.halted().filter(|_| self.refused)?;
         let before = halted.previous.as_ref()?;
         if self.shortest_asked(problem) < self.options.steps.smallest {
@@ -73,7 +87,18 @@ impl Engine {
     /// Has the walk go back to the point before the last one, for a shorter step from there; one that is shorter than the last that was asked for from there,
     /// too. Beside a corner an orbit far away may be behind a step however short.
     pub(super) fn ask_again(&mut self, problem: &dyn BranchProblem, before: CurvePoint, step: f64) {
-        let step = step.min(SHORTER * self.shortest_asked(problem));
+        self.ask_at_most(problem, before, step, AT_MOST);
+    }
+
+    /// The same, where the step may be this part of the last that was asked for from there.
+    pub(super) fn ask_at_most(
+        &mut self,
+        problem: &dyn BranchProblem,
+        before: CurvePoint,
+        step: f64,
+        part: f64,
+    ) {
+        let step = step.min(part * self.shortest_asked(problem));
         self.asked = Some(Asked {
             points: problem.points(),
             step,

@@ -161,7 +161,12 @@ impl Engine {
         let through: Vec<_> = bent.collect();
         if through.is_empty() {
             if problem.force_jumps() {
-                self.back = self.corner_within(problem, [here, there], length);
+                let within = self.corner_within(problem, [here, there], length);
+                if let Some((before, way)) = within
+                    && self.shortest_asked(problem) > SHORTEST_AGAIN
+                {
+                    self.ask_at_most(problem, before, way, LONGEST);
+                }
             }
             return self.back.is_some();
         }

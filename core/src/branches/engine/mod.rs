@@ -225,19 +225,10 @@ fn go_on(
                 return Ok(Stop::Interrupted);
             }
             Err(_) if problem.couple_fully() => begun,
-            Err(reason) => {
-                let Some(halted) = last.take() else {
-                    let Some(shorter) = engine.before_refused(problem, &begun) else {
-                        return engine.stranded(problem, &begun, reason);
-                    };
-                    start = shorter;
-                    continue;
-                };
-                // What was found with the former unknowns stands.
-                problem.revert();
-                engine.displaced = None;
-                Start::At(halted)
-            }
+            Err(reason) => match engine.reverted(problem, &begun, last.take()) {
+                Some(from) => from,
+                None => return engine.stranded(problem, &begun, reason),
+            },
         };
     }
 }

@@ -108,7 +108,13 @@ pub(in crate::contact_equation) fn event(
     // Farther away than the step it is another one.
     let is_same = |again: &Again| {
         let moved = (again.point.parameter() - at.parameter()).abs();
-        moved <= way + SAME * event.error
+        let known = KNOWN * at.parameter().abs();
+        let error = if event.error.is_finite() {
+            event.error
+        } else {
+            0.0
+        };
+        moved <= way + known + SAME * error
     };
     let Some(mut again) = again.filter(is_same) else {
         let finer = read.finer.as_ref().map(|map| {
@@ -363,7 +369,7 @@ fn again(
         }
     }
     // Where the test function jumps instead, the last two places may be anywhere.
-    (f1.abs() <= VANISHED || (x1 - x0).abs() <= APART).then_some((best, f1, 0.0))
+    (f1.abs() <= VANISHED || (x1 - x0).abs() < APART).then_some((best, f1, 0.0))
 }
 
 /// The same where branches cross: the equations are singular there, and are solved at four points around, whose cubic has the zero and the

@@ -41,10 +41,10 @@ const _: () = {
 };
 /// Points of the rules between two targets, and up to which angle of a kernel on the way each serves: polynomials through nodes turn by half of a period
 /// there, and with `n` points what is left of a wave that turns by `T` is as large as the Bessel function `J_2n(T / 2)`.
-const POINTS: [usize; RULES] = [10, 12, 14, 16, 18, 24, 32, 48];
-const TURNS: [f64; RULES] = [2.5, 5.5, 9.5, 13.0, 18.0, 30.0, 56.0, 90.0];
+const POINTS: [usize; RULES] = [12, 16, 20, 24, 32, 48];
+const TURNS: [f64; RULES] = [5.5, 13.0, 18.0, 30.0, 56.0, 90.0];
 /// How many rules there are.
-pub(in crate::contact_equation) const RULES: usize = 8;
+pub(in crate::contact_equation) const RULES: usize = 6;
 /// The largest power of which polynomials stand for the force itself.
 const PLAIN_POWER: usize = 2;
 /// Points of the rule for (2).

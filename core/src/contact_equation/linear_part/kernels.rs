@@ -26,8 +26,7 @@ const FARTHEST: f64 = 700.0;
 /// Exponents up to which a series of degree seven has all digits.
 const NEAR: f64 = 1.0 / 32.0;
 /// What a series in nested form is divided by.
-const PER_DEGREE: [f64; 8] = [
-    1.0,
+const PER_DEGREE: [f64; 7] = [
     1.0,
     1.0 / 2.0,
     1.0 / 3.0,
@@ -179,8 +178,8 @@ fn decay_little(angles: &[f64], [mean, per_root]: [f64; 2], [c, k]: [&mut [f64];
     for ((angles, c), k) in angles.iter().zip(c).zip(k) {
         let x = angles.map(|angle| mean * angle);
         let mut decay = [1.0; LANES];
-        for degree in (1..=7).rev() {
-            decay = lanes(|j| 1.0 + x[j] * PER_DEGREE[degree] * decay[j]);
+        for per in PER_DEGREE.into_iter().rev() {
+            decay = lanes(|j| 1.0 + x[j] * per * decay[j]);
         }
         for j in 0..LANES {
             c[j] *= decay[j];

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use hertzian::{
     Branch, ContactEquation, Error, EventKind, FrequencyResponse, HarmonicBalance, OrbitMethod,
+    Stop,
 };
 
 hertzian::oscillator! {
@@ -58,5 +59,14 @@ fn a_branch_that_turns_where_a_contact_begins_is_followed_by_both() -> Result<()
         );
         assert!(stated < 1e-9 && other < 1e-7);
     }
+    Ok(())
+}
+
+/// In a range that is short, so that steps are, equations of few nodes have orbits behind the touch where there are none.
+#[test]
+fn no_orbit_that_more_nodes_do_not_have_ends_a_branch() -> Result<(), Error> {
+    let request = FrequencyResponse::of(&Sticky {}).from(2.181_422_586_288_869);
+    let branch = request.to(2.1872).by(ContactEquation::new()).run()?;
+    assert_eq!(branch.stopped, Stop::ReachedEnd);
     Ok(())
 }

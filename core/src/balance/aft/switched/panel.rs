@@ -6,14 +6,14 @@
 //!
 //! How many nodes suffice, [`spectrum`](super::spectrum) tells. Where there is no rule with that number, the panel is cut in two.
 //!
-//! A sum of harmonics `c_k` is rounded by about `e S`, `S = sum |c_k|`, with the unit roundoff `e`. Where the gap goes no farther
+//! A sum of harmonics is rounded by about `e S`, with the sum `S` of their sizes and the unit roundoff `e`. Where the gap goes no farther
 //! beyond its level than `h`, the force has a rounding of
 //!
 //! ```text
-//! |phi| e S / h  +  |phi_r| e sum k |c_k|                                                                     (1)
+//! min(|phi| / h, |phi_g|) e S  +  |phi_r| e S_r                                                               (1)
 //! ```
 //!
-//! and no rule has to see what is smaller: on a contact as short as that the halves of a part are as rough as the part.
+//! with the sum `S_r` of the rate, and no rule has to see what is smaller: on a contact as short as that the halves of a part are as rough as the part.
 
 use super::cut::{End, Panel};
 use super::spectrum::Spectrum;
@@ -38,7 +38,7 @@ const SLOPE_ERROR: f64 = 1e-11;
 /// Halvings of a panel, at most.
 const DEPTH: u32 = 12;
 /// Rounding of a sum of harmonics, in parts of the sum of their sizes.
-const ROUNDING: f64 = 2.0 * f64::EPSILON;
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Workspace for the nodes of one panel, and the graded rules met so far.
 #[derive(Debug, Default)]
@@ -223,9 +223,8 @@ impl Quadrature {
         let mut look = |which: usize, values: &[f64], harmonics: f64, error: f64| {
             let parent = part.spectra[which];
             let spectrum = Spectrum::of(values, &rule.slopes, rule.plain, width, parent);
-            if !spectrum.is_within(rounding) {
-                most = most.max(spectrum.nodes(parent, degrees * harmonics, error));
-            }
+            let error = error.max(spectrum.rounding(rounding));
+            most = most.max(spectrum.nodes(parent, degrees * harmonics, error));
             spectra[which] = spectrum;
         };
         look(0, &self.force, demand.force, FORCE_ERROR);
@@ -255,13 +254,16 @@ impl Quadrature {
         };
         let farthest = self.gap[..count].iter().map(beyond).fold(0.0, f64::max);
         let [gap, rate] = self.rounding;
-        let by_gap = gap / farthest;
-        let by_rate = if with_slopes && piece.by_rate != Variation::Zero {
-            largest(&self.by_rate) * rate / largest(&self.force)
-        } else {
-            0.0
-        };
-        by_gap + by_rate
+        let force = largest(&self.force);
+        let mut sum = gap / farthest;
+        if with_slopes && force > 0.0 {
+            // Less where the force is more than what it is of the gap, as behind a jump.
+            sum = sum.min(largest(&self.by_gap) * gap / force);
+            if piece.by_rate != Variation::Zero {
+                sum += largest(&self.by_rate) * rate / force;
+            }
+        }
+        sum
     }
 
     /// Puts nodes on a part of a panel.

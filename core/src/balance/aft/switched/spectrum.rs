@@ -23,7 +23,7 @@ const SMALL: f64 = 1e-6;
 /// Noise weighs half as much in a part half as wide, a power `p` of the distance from somewhere inside `2^-p` times that.
 const FALLEN: f64 = 0.36;
 
-/// One quantity on a part of a panel; both numbers are in proportion to an integral over the part.
+/// One quantity on a part of a panel; sizes are in proportion to an integral over the part.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Spectrum {
     /// The largest of the highest coefficients.
@@ -81,14 +81,16 @@ impl Spectrum {
         let fall = -part.ln() / self.degree;
         if fall > 0.0 {
             0.5 * (degrees - error.ln() / fall)
+        } else if part <= error {
+            0.5 * degrees
         } else {
             f64::INFINITY
         }
     }
 
-    /// Whether the coefficients are no larger than a rounding of the values, in parts of the largest.
-    pub(super) fn is_within(self, rounding: f64) -> bool {
-        self.highest <= rounding * self.here
+    /// A rounding of the values, in parts of the largest here, as one of all.
+    pub(super) fn rounding(self, rounding: f64) -> f64 {
+        rounding * self.here / self.size
     }
 
     /// Whether coefficients that were small before the part was halved have not fallen since, compared at one degree.
@@ -136,14 +138,16 @@ mod tests {
         assert!(half.nodes(whole, 0.0, 1e-15) > 12.0);
     }
 
+    /// The highest coefficients of noise are up to some ten times as large as that.
     #[test]
-    fn what_values_are_rounded_by_is_within_their_rounding() {
-        for size in [1e-12, 1e-6, 0.1] {
+    fn what_is_smaller_than_rounding_needs_no_more() {
+        let unknown = Spectrum::UNKNOWN;
+        for size in [1e-12, 1e-6, 0.01, 3.0] {
             let noise = |x: f64| size * (1e9 * x + 1.0).sin();
-            let found = on(24, 0.5, Spectrum::UNKNOWN, |x| 1.0 + noise(x));
-            // Each coefficient of noise is as large as that, the largest of some a few times.
-            assert!(found.is_within(4.0 * size), "{size}");
-            assert!(!found.is_within(1e-3 * size), "{size}");
+            let found = on(24, 0.5, unknown, |x| 1.0 + noise(x));
+            let nodes = |rounding| found.nodes(unknown, 10.0, found.rounding(rounding).max(1e-15));
+            assert!(nodes(10.0 * size) <= 24.0, "{size}");
+            assert!(nodes(1e-3 * size) > 24.0, "{size}");
         }
     }
 
